@@ -52,36 +52,31 @@ Result<ShownModel> read_models(const RenderOptions& options, Console& console) {
   return joined;
 }
 
-Result<Image> paint(FramePainter& painter, const ShownModel& model, const PictureSettings& picture) {
+Result<Image> paint(FramePainter& painter, const ShownModel& model, const ViewSettings& view) {
   Image image;
-  if (Status painted = painter.paint(model.snapshot, make_picture_view(model, picture), {}, image); !painted)
-    return painted.error();
-  if (picture.is_transparent) make_alpha_straight(image);
+  if (Status painted = painter.paint(model.snapshot, view, {}, image); !painted) return painted.error();
+  if (view.is_transparent) make_alpha_straight(image);
   return image;
 }
 
 // Writes a video in which the model turns once.
 Status write_turntable(const RenderOptions& options, const ShownModel& model, FramePainter& painter,
                        Console& console) {
-  if (!VideoEncoder::available())
-    return Error{ErrorCode::unsupported, "ffmpeg is not installed; install it, or leave out --turntable"};
   auto encoder = VideoEncoder::start(options.video, options.size.width, options.size.height,
                                      turntable_pictures_per_s, 1);
   if (!encoder) return encoder.error();
   InterruptWatch interrupt;
   ProgressBar bar(console, "Drawing", false);
-  PictureSettings picture = options.picture;
-  for (int k = 0; k < options.turntable; ++k) {
+  int done = 0;
+  for (const ViewSettings& view : make_turntable(model, options.picture, options.turntable)) {
     if (interrupt.requested()) {
       interrupt.answer();
       return Error{ErrorCode::cancelled, "stopped; no video was written"};
     }
-    picture.direction.yaw_rad =
-        options.picture.direction.yaw_rad + 2.0 * std::numbers::pi * k / options.turntable;
-    const auto image = paint(painter, model, picture);
+    const auto image = paint(painter, model, view);
     if (!image) return image.error();
     if (Status added = encoder->add(image.value()); !added) return added;
-    bar.show(static_cast<std::uint64_t>(k) + 1, static_cast<std::uint64_t>(options.turntable));
+    bar.show(static_cast<std::uint64_t>(++done), static_cast<std::uint64_t>(options.turntable));
   }
   return encoder->finish();
 }
@@ -89,20 +84,27 @@ Status write_turntable(const RenderOptions& options, const ShownModel& model, Fr
 Status render(RenderOptions options, Console& console) {
   for (const auto& out : {options.out, options.video}) {
     if (Status checked = check_output(out, options.how); !checked) return checked;
+    for (const std::filesystem::path& model : options.models) {
+      if (Status checked = check_is_not_source(out, model, "the output"); !checked) return checked;
+    }
   }
+  if (options.turntable > 0 && !VideoEncoder::available())
+    return Error{ErrorCode::unsupported, "ffmpeg is not installed; install it, or leave out --turntable"};
   options.picture.width_px = options.size.width;
   options.picture.height_px = options.size.height;
   const auto model = read_models(options, console);
   if (!model) return model.error();
   auto painter = FramePainter::make(options.size.width, options.size.height);
   if (!painter) return painter.error();
-  const auto image = paint(painter.value(), model.value(), options.picture);
+  const auto image = paint(painter.value(), model.value(), make_picture_view(model.value(), options.picture));
   if (!image) return image.error();
   if (Status written = write_png(options.out, image.value(), options.how); !written) return written;
   FactSheet facts;
   facts.add("Picture", options.out.string(), "out", options.out.string());
   const std::size_t bodies = model->snapshot.bodies.size();
   facts.add("Bodies", std::to_string(bodies), "bodies", bodies);
+  for (const std::string& note : model->notes) facts.add("Note", note, "", nullptr);
+  facts.add("", "", "notes", model->notes);
   if (options.turntable > 0) {
     if (Status written = write_turntable(options, model.value(), painter.value(), console); !written)
       return written;
@@ -125,8 +127,8 @@ CommandEntry add_render(OptionSet root) {
   const OptionSet parser = root.add_command("render", "Draw a picture of a model, without simulating it");
   parser.set_footer(
       "Draws documents, the models of recordings and scripts, CAD files, meshes and point clouds. Several\n"
-      "models are drawn together, as they are. They stand on the ground of the first document that has one,\n"
-      "or on a ground at their lowest point. A cloud is drawn as discs.\n"
+      "models are drawn together, as they are. They stand on the level ground of the first document that\n"
+      "has one, or on a ground at their lowest point. A cloud is drawn as discs.\n"
       "Example: spoonbill render assets/models/spoon-handle.json --out handle.png --material steel");
   parser.add_option("MODEL", options->models, "Models of any format that the program reads").require();
   parser.add_option("--out", options->out, "Picture to write (.png)").require().show_as("FILE");
@@ -145,7 +147,8 @@ CommandEntry add_render(OptionSet root) {
       [options](const Overlays& overlays) { options->picture.overlays = overlays; },
       "What is shown beside the model: grid, scale, legend, net, planes, separated by commas; default: "
       "nothing");
-  parser.add_flag("--transparent", options->picture.is_transparent, "Leave out the background");
+  const CommandOption transparent =
+      parser.add_flag("--transparent", options->picture.is_transparent, "Leave out the background");
   const CommandOption video =
       parser.add_option("--video", options->video, "Video to write; its ending selects the format");
   const CommandOption turntable =
@@ -154,12 +157,13 @@ CommandEntry add_render(OptionSet root) {
                       "Number of pictures of a video in which the model turns once, 30 per second")
           .limit(turntable_range)
           .show_as("N");
-  turntable.need(video);
+  turntable.need(video).exclude(transparent);
   video.show_as("FILE").need(turntable);
   add_force_option(parser, options->how);
   add_json_option(parser, options->json);
   parser.set_final_check([options]() -> Status {
-    if (options->out.extension() == ".png") return {};
+    const std::string ending = options->out.extension().string();
+    if (ending == ".png" || ending == ".PNG") return {};
     return Error{ErrorCode::unsupported, "--out: '" + options->out.string() + "' must end in .png", "--out"};
   });
   return {parser, [options](Console& console) { return render(*options, console); }};

@@ -20,7 +20,7 @@ namespace {
 Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& file) {
   auto snapshot = make_scene_snapshot(scene);
   if (!snapshot) return snapshot.error().in(file.string());
-  return ShownModel{std::move(snapshot).value(), scene.ground};
+  return ShownModel{std::move(snapshot).value(), scene.ground, {}};
 }
 
 Result<ShownModel> show_document(const std::filesystem::path& file) {
@@ -68,7 +68,9 @@ Result<ShownModel> show_cad(const std::filesystem::path& file, const Progress& p
     body.trims = face.trims;
     if (face.shell_thickness_m > 0.0) body.shell_thickness_m = face.shell_thickness_m;
   }
-  return show_scene(scene, file);
+  auto shown = show_scene(scene, file);
+  if (shown) shown->notes = model->notes;
+  return shown;
 }
 
 Result<ShownModel> show_scan(const std::filesystem::path& file) {
@@ -78,7 +80,12 @@ Result<ShownModel> show_scan(const std::filesystem::path& file) {
   TriangleMesh mesh = scan.triangles.empty()
                           ? make_point_discs(scan, shown_point_limit)
                           : TriangleMesh{std::move(scan.points_m), std::move(scan.triangles)};
+  const auto is_line = [](const TriangleCorners& at) {
+    return at[0] == at[1] || at[1] == at[2] || at[2] == at[0];
+  };
+  std::erase_if(mesh.triangles, is_line);
   ShownModel shown;
+  if (mesh.triangles.empty()) return shown;
   MeshSnapshot& drawn = shown.snapshot.bodies.emplace_back().mesh;
   drawn = make_mesh_snapshot(mesh);
   drawn.is_closed = false;

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
@@ -16,8 +18,9 @@ inline constexpr std::size_t shown_point_limit = 60'000;
 
 // Model as a picture shows it.
 struct ShownModel {
-  Snapshot snapshot;             // bodies at rest, without lattices
-  std::optional<Ground> ground;  // the ground on which the bodies of a document stand
+  Snapshot snapshot;               // bodies at rest, without lattices
+  std::optional<Ground> ground;    // the ground on which the bodies of a document stand
+  std::vector<std::string> notes;  // what the picture does not show, one line each
 };
 
 // Reads a document, the model of a recording or of a script, the faces of a CAD file, a mesh or a cloud of

@@ -19,6 +19,9 @@ namespace {
 constexpr double radians_per_degree = std::numbers::pi / 180.0;
 constexpr Range<double> azimuth_range_deg{-360.0, 360.0}, elevation_range_deg{-90.0, 90.0};
 
+// A ground is drawn level if its normal is steeper than this.
+constexpr double level_normal_y = 0.9999;
+
 // Part of the picture that the model fills in the tighter direction.
 constexpr double picture_fraction = 0.8;
 
@@ -119,6 +122,7 @@ ShownModel join_models(std::span<const ShownModel> models) {
     const auto append = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
     append(model.snapshot.bodies, joined.snapshot.bodies);
     append(model.snapshot.planes, joined.snapshot.planes);
+    append(model.notes, joined.notes);
     if (!joined.ground) joined.ground = model.ground;
   }
   return joined;
@@ -160,8 +164,25 @@ ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& p
   view.overlays = picture.overlays;
   view.keep_level = false;
   view.is_transparent = picture.is_transparent;
-  view.ground_y_m = model.ground ? model.ground->point_m.y() : framed_box(model.snapshot).low.y();
+  const bool is_level = model.ground && model.ground->normal.y() > level_normal_y;
+  view.ground_y_m = is_level ? model.ground->point_m.y() : framed_box(model.snapshot).low.y();
   return view;
+}
+
+std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureSettings& picture, int count) {
+  std::vector<ViewSettings> views;
+  PictureSettings turned = picture;
+  double distance_m = 0.0;
+  for (int k = 0; k < count; ++k) {
+    turned.direction.yaw_rad = picture.direction.yaw_rad + 2.0 * std::numbers::pi * k / count;
+    views.push_back(make_picture_view(model, turned));
+    distance_m = std::max(distance_m, views.back().camera.distance_m);
+  }
+  for (ViewSettings& view : views) {
+    view.camera.target_m = framed_box(model.snapshot).centre();
+    view.camera.distance_m = distance_m;
+  }
+  return views;
 }
 
 }  // namespace spoonbill

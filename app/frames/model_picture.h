@@ -2,7 +2,9 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/files/shown_model.h"
 #include "engine/base/result.h"
@@ -43,8 +45,10 @@ struct PictureSettings {
   int width_px = 1280, height_px = 720;
 };
 
-// Returns the settings that show the whole model. It stands on the ground of its document, or on a ground at
-// its lowest point.
+// Returns the settings that show the whole model. It stands on the level ground of its document, or on a
+// ground at its lowest point.
 ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& picture);
+// Returns the settings of `count` pictures in which the model turns once, at the same distance.
+std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureSettings& picture, int count);
 
 }  // namespace spoonbill

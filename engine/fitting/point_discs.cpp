@@ -17,6 +17,8 @@ constexpr std::size_t neighbour_count = 7;  // of a point, itself included
 constexpr std::uint32_t corner_count = 6;
 // Radius in mean distances to the neighbours, with which the discs of scattered points leave few gaps.
 constexpr double radius_fraction = 0.9;
+// Spacing of points that are all in one place.
+constexpr double lone_spacing_m = 1e-3;
 
 // Returns the normal of the plane that fits the points best; the y axis if they are all in one place.
 Vector3 plane_normal(const std::vector<Vector3>& points, const std::vector<NearestPoints::Neighbour>& of) {
@@ -58,14 +60,26 @@ TriangleMesh make_point_discs(const Scan& cloud, std::size_t limit) {
   }
   const NearestPoints nearest(points);
   std::vector<NearestPoints::Neighbour> around;
+  std::vector<double> spacings_m;  // mean distance of each point to those around it that are elsewhere
+  std::vector<double> known_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
     nearest.nearest(points[i], neighbour_count, around);
-    const bool has_normal = !normals.empty() && normals[i].squaredNorm() > 0.5;
-    const Vector3 normal = has_normal ? normals[i].normalized() : plane_normal(points, around);
     double sum_m = 0.0;
-    for (const auto& neighbour : around) sum_m += neighbour.distance;
-    const double mean_m = sum_m / static_cast<double>(std::max<std::size_t>(1, around.size() - 1));
-    append_disc(points[i], normal, radius_fraction * mean_m, mesh);
+    int elsewhere = 0;
+    for (const auto& neighbour : around) {
+      sum_m += neighbour.distance;
+      elsewhere += neighbour.distance > 0.0 ? 1 : 0;
+    }
+    spacings_m.push_back(elsewhere > 0 ? sum_m / elsewhere : 0.0);
+    if (elsewhere > 0) known_m.push_back(spacings_m.back());
+    if (normals.size() <= i) normals.push_back(plane_normal(points, around));
+    if (!(normals[i].squaredNorm() > 0.5)) normals[i] = plane_normal(points, around);
+  }
+  const double usual_m = known_m.empty() ? lone_spacing_m : median(known_m);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double spacing_m =
+        spacings_m[i] > 0.0 ? std::clamp(spacings_m[i], 0.5 * usual_m, 2.0 * usual_m) : usual_m;
+    append_disc(points[i], normals[i].normalized(), radius_fraction * spacing_m, mesh);
   }
   return mesh;
 }

@@ -276,6 +276,7 @@ std::uint64_t Simulation::state_hash() const {
       body.rigid->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
     }
     if (body.lowering_m_per_s > 0.0) hash.add(body.lowering_m_per_s);
+    if (body.is_gone) hash.add(std::uint64_t{1});
     if (s.scene.ground && body.implicit_solver) {
       body.implicit_solver->visit_state_on_ground(
           [&](const double* data, std::size_t count) { hash.add(data, count); });

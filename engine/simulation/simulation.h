@@ -158,9 +158,9 @@ class Simulation {
   double contact_area_m2(int body) const;
   // Returns find_smallest_contact_radius_m() of a body; 0 for a rigid one.
   double smallest_contact_radius_m(int body) const;
-  // Returns whether a deformable body has gone farther than gone_distance_m from where the bodies of a scene
-  // in real time were at rest. It then stays where it is, without contacts: the rounding of its
-  // displacements, which are in single precision, would shake it.
+  // Returns whether a deformable body of a scene in real time has gone farther than gone_distance_m from the
+  // ground and from where the bodies were at rest. It then stays where it is, without contacts: the rounding
+  // of its displacements, which are in single precision, would shake it.
   bool is_gone(int body) const;
   // Returns the pose of a fixed or rigid body, which maps its rest shape to the present one; empty for a
   // deformable body.

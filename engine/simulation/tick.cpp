@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "engine/base/assert.h"
@@ -237,16 +238,30 @@ void hold_bodies(Simulation::State& s, const TickPart& part) {
   }
 }
 
+// Returns the box around the bodies at rest and the ground below them.
+Box find_place(const Simulation::State& s) {
+  Box place = s.scene_box;
+  if (const std::optional<Ground>& ground = s.scene.ground) {
+    const Vector3 centre_m = place.centre();
+    place.include(centre_m - ground->normal.dot(centre_m - ground->point_m) * ground->normal);
+  }
+  return place;
+}
+
 // Finds the bodies that are gone from the scene, and those that a command has put back.
 void find_gone_bodies(Simulation::State& s) {
   constexpr std::uint64_t interval_ticks = 16;
-  if (!s.scene.sculpting.real_time || s.tick % interval_ticks != 0) return;
+  if (s.tick % interval_ticks != 0) return;
+  const Box place = find_place(s);
   for (BodyState& body : s.scene_bodies()) {
-    if (body.rigid || body.lattice.has_fixed_nodes()) continue;
-    const bool is_gone = s.scene_box.squared_distance(find_mass_centre(body.lattice).position_m) >
-                         gone_distance_m * gone_distance_m;
-    if (is_gone != body.is_gone) s.searched.forget();
+    const bool can_go = s.scene.sculpting.real_time && !body.rigid && !body.lattice.has_fixed_nodes() &&
+                        !(body.lowering_m_per_s > 0.0);
+    const bool is_gone = can_go && place.squared_distance(find_mass_centre(body.lattice).position_m) >
+                                       gone_distance_m * gone_distance_m;
+    if (is_gone == body.is_gone) continue;
     body.is_gone = is_gone;
+    s.searched.forget();
+    s.between.forget();
   }
 }
 

@@ -261,13 +261,17 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
   ++ticks_;
   phase_s_ += tick_s;
   largest_speed_m_per_s_ = 0.0;
+  bool is_any_gone = false;
   for (std::size_t b = 0; b < forces_.size(); ++b) {
+    is_any_gone = is_any_gone || simulation.is_gone(static_cast<int>(b));
     if (!is_movable(simulation.scene().bodies[b])) continue;
     largest_speed_m_per_s_ =
         std::max(largest_speed_m_per_s_, simulation.fastest_m_per_s(static_cast<int>(b)));
   }
   largest_penetration_m_ = std::max(largest_penetration_m_, simulation.largest_overlap_m());
-  still_s_ = largest_speed_m_per_s_ <= settled_speed_m_per_s ? still_s_ + tick_s : 0.0;
+  // A body that is gone has stopped only because it is not simulated any more.
+  const bool is_still = largest_speed_m_per_s_ <= settled_speed_m_per_s && !is_any_gone;
+  still_s_ = is_still ? still_s_ + tick_s : 0.0;
   record_forces(simulation);
   if (const char* const failure = describe_failure(flags)) {
     spills_.follow(simulation, time_s(), true);

@@ -41,12 +41,19 @@ TEST(PointDiscs, AreAtMostAsManyAsAllowed) {
   EXPECT_TRUE(make_point_discs(Scan{}, 150).triangles.empty());
 }
 
-TEST(PointDiscs, ExistForPointsInOnePlace) {
+TEST(PointDiscs, ShowPointsInOnePlace) {
   Scan cloud;
   cloud.points_m.assign(3, Vector3(0.01, 0.02, 0.03));
   for (const Vector3& corner : make_point_discs(cloud, 10).vertices_m) {
-    EXPECT_LT((corner - cloud.points_m[0]).norm(), 1e-12);
+    EXPECT_NEAR((corner - cloud.points_m[0]).norm(), 1e-3, 2e-4);
   }
+}
+
+TEST(PointDiscs, AreNotLargeForStrayPoints) {
+  Scan cloud = level_grid(0.001);
+  cloud.points_m.push_back({0.01, 0.3, 0.01});
+  const TriangleMesh mesh = make_point_discs(cloud, 1000);
+  EXPECT_LT((mesh.vertices_m.back() - cloud.points_m.back()).norm(), 0.003);
 }
 
 }  // namespace

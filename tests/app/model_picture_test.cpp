@@ -1,0 +1,65 @@
+// Tests the views of pictures of models.
+#include "app/frames/model_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace spoonbill {
+namespace {
+
+const std::string bundled_handle = std::string(SPOONBILL_ASSETS) + "/models/spoon-handle.json";
+
+// Returns the part of the picture's half width or height that the control points reach at most.
+double reach(const ShownModel& model, const ViewSettings& view, const PictureSettings& picture) {
+  const Viewport viewport = make_viewport(picture.width_px, picture.height_px, {});
+  double most = 0.0;
+  const SurfaceSnapshot& surface = model.snapshot.bodies[0].surface;
+  for (std::size_t i = 0; i < surface.x.size(); ++i) {
+    const auto pixel = project(view.camera, viewport, {surface.x[i], surface.y[i], surface.z[i]});
+    if (!pixel) return 10.0;
+    most = std::max({most, std::abs(pixel->x() / (0.5 * picture.width_px) - 1.0),
+                     std::abs(pixel->y() / (0.5 * picture.height_px) - 1.0)});
+  }
+  return most;
+}
+
+TEST(ModelPicture, FillsMostOfThePictureFromEverySide) {
+  const ShownModel model = read_shown_model(bundled_handle, {}).value();
+  for (const char* side : {"perspective", "front", "right", "top", "120,-40"}) {
+    PictureSettings picture;
+    picture.direction = parse_view_direction(side).value();
+    EXPECT_NEAR(reach(model, make_picture_view(model, picture), picture), 0.8, 0.01) << side;
+  }
+}
+
+// The handle is much longer than wide. While it turns, it stays in the picture and keeps its size.
+TEST(ModelPicture, TurnsAtTheSameDistance) {
+  const ShownModel model = read_shown_model(bundled_handle, {}).value();
+  const PictureSettings picture;
+  const std::vector<ViewSettings> views = make_turntable(model, picture, 12);
+  ASSERT_EQ(views.size(), 12u);
+  double most = 0.0;
+  for (const ViewSettings& view : views) {
+    EXPECT_EQ(view.camera.distance_m, views[0].camera.distance_m);
+    EXPECT_EQ(view.camera.target_m, views[0].camera.target_m);
+    most = std::max(most, reach(model, view, picture));
+  }
+  EXPECT_NEAR(most, 0.8, 0.1);
+  EXPECT_GT(views[3].camera.yaw_rad, views[2].camera.yaw_rad);
+}
+
+TEST(ModelPicture, StandsOnALevelGroundOnly) {
+  ShownModel model = read_shown_model(bundled_handle, {}).value();
+  const double lowest_m = make_picture_view(model, {}).ground_y_m;
+  model.ground = Ground{{0.0, -0.05, 0.0}, Vector3::UnitY(), 0.3};
+  EXPECT_EQ(make_picture_view(model, {}).ground_y_m, -0.05);
+  model.ground->normal = Vector3(0.1, 1.0, 0.0).normalized();
+  EXPECT_EQ(make_picture_view(model, {}).ground_y_m, lowest_m);
+}
+
+}  // namespace
+}  // namespace spoonbill
