@@ -165,8 +165,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const ContactKey key{first.body, second.body, sample};
   const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
   if (kept == nullptr && has_searched_ && found_gap_m < -deepest_new_m) return true;
-  const bool is_folded =
-      kept != nullptr && (kept->normal.dot(found_normal) < 0.0 || found_gap_m < kept->gap_m - deepest_new_m);
+  const bool is_folded = kept != nullptr && kept->normal.dot(found_normal) < 0.0;
   const Vector3 normal = is_folded ? kept->normal : found_normal;
   const double gap_m = is_folded ? kept->gap_m : found_gap_m;
   if (constraints_.size() == capacity_) return false;

@@ -79,9 +79,9 @@ class BodyContacts {
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
   // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
-  // constraint in the last tick is therefore left out, and a constraint whose normal has turned round, or
-  // that would be deeper by more than `deepest_new_m` at once, keeps its earlier normal and gap. Bodies that
-  // begin in each other keep all points of the first search after forget().
+  // constraint in the last tick is therefore left out, and a constraint whose normal has turned round keeps
+  // its earlier normal and gap. Bodies that begin in each other keep all points of the first search after
+  // forget().
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample);
   // Adds a constraint that keeps a point of a rigid body, or of a body with springs, on the side of the
