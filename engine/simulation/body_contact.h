@@ -50,7 +50,7 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 inline constexpr double body_depth_limit_cells = 0.07;
 
 // Gap below which a constraint is added for a point, in lattice cells of the coarser body that is deformable.
-// The margin is at least twice the approach of the bodies in a tick.
+// The margin is at least twice the approach of the bodies in a step of find().
 inline constexpr double contact_margin_cells = 0.08;
 
 // A tick is divided where bodies near each other approach each other in it by more than this distance, in

@@ -182,7 +182,7 @@ void record_pushes(Simulation::State& s, double time_s) {
   }
 }
 
-// Puts a rigid body with dynamics back where it was at the start of the tick, at rest, shifted by `shift_m`.
+// Puts a rigid body with dynamics back where it was at the start of the step, at rest, shifted by `shift_m`.
 void return_to_start(BodyState& body, const Vector3& shift_m) {
   body.rigid->return_to_start(shift_m);
   body.rigid->dynamics()->place_nodes(body.lattice.view());
@@ -208,7 +208,7 @@ void lower(Simulation::State& s, std::size_t index, const TickPart& part) {
   }
 }
 
-// Puts a rigid body back where it was at the start of the tick, at rest, if it has no finite pose, or if it
+// Puts a rigid body back where it was at the start of the step, at rest, if it has no finite pose, or if it
 // is free and keeps its place. Returns true if its pose was not finite.
 bool hold_rigid(BodyState& body, bool keeps_place) {
   if (!body.is_movable_rigid()) return false;
