@@ -26,10 +26,10 @@ constexpr double least_lead_cells = 0.02;
 // the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
 
-// Largest depth of a point that had no contact in the last tick, in cells, or the approach of the bodies in
-// a tick if that is larger. A deeper point is beside a fold of the surface. The approach does not include the
-// motion of the hand, so that a few points of a soft tool may be left out if the hand is faster than about 1
-// m/s.
+// Largest depth of a point that had no contact in the last step, in cells, or the approach of the bodies in
+// that step if that is larger. A deeper point is beside a fold of the surface. The approach does not include
+// the motion of the hand, so that a few points of a soft tool may be left out if the hand is faster than
+// about 1 m/s.
 constexpr double deepest_new_cells = 0.2;
 
 }  // namespace
@@ -470,6 +470,12 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
 
 namespace {
 
+// Returns the largest depth of a point that had no contact before: how far bodies have come into each other
+// in the last step, if they move by `tick_motion_m` in a tick.
+double find_deepest_new_m(double cell_m, double tick_motion_m, const BodyContacts& contacts) {
+  return std::max(deepest_new_cells * cell_m, contacts.time_s() / tick_s * tick_motion_m);
+}
+
 // Approach in a tick, in cells, above which all samples of a rigid body have contacts, blunt or not. The
 // samples of a soft body may then be behind the wall before they have a contact.
 constexpr double fast_approach_cells = 0.1;
@@ -494,7 +500,8 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second, 
   // Points that come within reach during a step need their constraints when it begins. Bodies may become
   // faster in it.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
-  deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
+  cell_m_ = cell;
+  tick_motion_m_ = tick_motion_m;
   const BodyState &one = is_mesh_first_ ? *second.state : *first.state,
                   &other = is_mesh_first_ ? *first.state : *second.state;
   if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
@@ -535,24 +542,24 @@ std::optional<SurfaceSpot> BodyPairContact::deepest_on_second(const BodyState& s
 
 bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& second,
                                    BodyContacts& contacts) const {
+  const double deepest_new_m = find_deepest_new_m(cell_m_, tick_motion_m_, contacts);
   if (const auto* const mesh = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
     return is_mesh_first_
-               ? add_contacts_of(second, first, **mesh, deepest_new_m_, second_cones_, first_cones_, contacts)
-               : add_contacts_of(first, second, **mesh, deepest_new_m_, first_cones_, second_cones_,
-                                 contacts);
+               ? add_contacts_of(second, first, **mesh, deepest_new_m, second_cones_, first_cones_, contacts)
+               : add_contacts_of(first, second, **mesh, deepest_new_m, first_cones_, second_cones_, contacts);
   }
   if (const auto* const meshes = std::get_if<std::unique_ptr<MeshPairProximity>>(&proximity_)) {
     const bool first_complete =
-        add_contacts_of(first, second, (*meshes)->first_vertices(), deepest_new_m_, first_cones_, contacts);
+        add_contacts_of(first, second, (*meshes)->first_vertices(), deepest_new_m, first_cones_, contacts);
     const bool second_complete =
-        add_contacts_of(second, first, (*meshes)->second_vertices(), deepest_new_m_, second_cones_, contacts);
+        add_contacts_of(second, first, (*meshes)->second_vertices(), deepest_new_m, second_cones_, contacts);
     return first_complete && second_complete;
   }
   const SurfaceProximity& surfaces = **std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
   const bool first_complete =
-      add_near_points(first, second, surfaces.first_points(), deepest_new_m_, contacts, first_cones_);
+      add_near_points(first, second, surfaces.first_points(), deepest_new_m, contacts, first_cones_);
   const bool second_complete =
-      add_near_points(second, first, surfaces.second_points(), deepest_new_m_, contacts, second_cones_);
+      add_near_points(second, first, surfaces.second_points(), deepest_new_m, contacts, second_cones_);
   return first_complete && second_complete;
 }
 
@@ -567,7 +574,7 @@ bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contac
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
   const double motion_m = find_approach_m(*body.state, *body.state, cell_m);
-  const double deepest_new_m = std::max(deepest_new_cells * cell_m, motion_m);
+  const double deepest_new_m = find_deepest_new_m(cell_m, motion_m, contacts);
   proximity_->find(body.state->mapping().current(), std::max(contact_margin_cells * cell_m, motion_m));
   if (const TrimmedArea* const trim = body.state->trim.get()) {
     proximity_->keep_if([&](const NearPoint& near) {

@@ -113,7 +113,7 @@ class BodyPairContact {
       proximity_;
   bool is_mesh_first_ = false;  // whether the first body has a mesh and the second a surface
   NormalCones first_cones_, second_cones_;
-  double deepest_new_m_ = 0.0;  // largest depth of a point that had no contact before the last find()
+  double cell_m_ = 0.0, tick_motion_m_ = 0.0;  // at the last find(): size of cells, approach in a tick
 };
 
 // Contact of a body with itself, where one part of its surface comes near another part from outside. A

@@ -101,6 +101,8 @@ class BodyContacts {
 
   // Starts a step of `time_s`: marks all constraints as not having acted.
   void begin(double time_s);
+  // Time of the last step, s; 0 before the first.
+  double time_s() const { return time_s_; }
 
   // Calls visit(node, impulse) for nodes of an implicitly stepped body, whose solver needs at the start of
   // its step the impulses that are known then, N s: the mean forces of the last step times the time of this

@@ -65,6 +65,15 @@ TEST(RandomScenes, StayWholeWhenTicksHaveManySubsteps) {
   for (const std::uint32_t seed : {89u, 119u}) expect_whole_second(seed);
 }
 
+// The skin of gelatin folds on the rim of a bowl. A point of the bowl beside the fold, which is outside the
+// gelatin, seems to be deep inside it.
+TEST(RandomScenes, StayWholeWhenSkinFolds) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  const SceneOutcome outcome = run_scene(make_random_scene(135), 140);
+  EXPECT_EQ(outcome.stopped, "");
+  expect_whole(outcome);
+}
+
 // A body is crushed until corners of its cells are inside out. Springs alone keep them so.
 TEST(RandomScenes, StayWholeWhenCellsAreTurnedInsideOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
