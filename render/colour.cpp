@@ -13,26 +13,27 @@ struct NamedLook {
   std::string_view word;
   int srgb[3];
   float roughness, metalness, translucency;
+  SurfacePattern pattern = SurfacePattern::none;
 };
 
 constexpr std::array<NamedLook, 18> looks = {{
-    {"clay", {164, 139, 113}, 0.74f, 0.0f, 0.0f},
-    {"plasticine", {196, 134, 96}, 0.62f, 0.0f, 0.0f},
-    {"wax", {232, 214, 168}, 0.45f, 0.0f, 0.15f},
-    {"steel", {198, 200, 202}, 0.24f, 1.0f, 0.0f},
-    {"alumin", {214, 216, 219}, 0.36f, 1.0f, 0.0f},
+    {"clay", {158, 116, 92}, 0.80f, 0.0f, 0.0f, SurfacePattern::smeared},
+    {"plasticine", {196, 134, 96}, 0.62f, 0.0f, 0.0f, SurfacePattern::smeared},
+    {"wax", {238, 220, 170}, 0.42f, 0.0f, 0.38f},
+    {"steel", {186, 189, 193}, 0.08f, 1.0f, 0.0f},
+    {"alumin", {232, 233, 236}, 0.52f, 1.0f, 0.0f, SurfacePattern::brushed},
     {"titan", {178, 173, 166}, 0.40f, 1.0f, 0.0f},
     {"silver", {240, 236, 226}, 0.20f, 1.0f, 0.0f},
     {"brass", {226, 192, 112}, 0.28f, 1.0f, 0.0f},
-    {"jelly", {234, 150, 24}, 0.14f, 0.0f, 0.78f},
-    {"gel", {234, 150, 24}, 0.14f, 0.0f, 0.78f},
-    {"silicone", {172, 190, 200}, 0.46f, 0.0f, 0.22f},
+    {"jelly", {230, 122, 6}, 0.08f, 0.0f, 0.78f},
+    {"gel", {230, 122, 6}, 0.08f, 0.0f, 0.78f},
+    {"silicone", {112, 186, 190}, 0.50f, 0.0f, 0.60f},
     {"rubber", {86, 90, 96}, 0.60f, 0.0f, 0.0f},
-    {"polypropylene", {214, 220, 224}, 0.40f, 0.0f, 0.08f},
-    {"abs", {196, 202, 208}, 0.34f, 0.0f, 0.0f},
-    {"wood", {188, 142, 96}, 0.66f, 0.0f, 0.0f},
-    {"beech", {206, 168, 122}, 0.62f, 0.0f, 0.0f},
-    {"foam", {214, 214, 206}, 0.90f, 0.0f, 0.0f},
+    {"polypropylene", {236, 239, 242}, 0.34f, 0.0f, 0.30f},
+    {"abs", {40, 43, 48}, 0.10f, 0.0f, 0.0f},
+    {"wood", {188, 142, 96}, 0.66f, 0.0f, 0.0f, SurfacePattern::grain},
+    {"beech", {218, 180, 138}, 0.58f, 0.0f, 0.0f, SurfacePattern::grain},
+    {"foam", {236, 214, 142}, 0.95f, 0.0f, 0.0f, SurfacePattern::pores},
     {"ceramic", {232, 230, 224}, 0.18f, 0.0f, 0.0f},
 }};
 
@@ -62,7 +63,8 @@ SurfaceLook find_material_look(std::string_view name) {
   return {{srgb8_to_linear(c[0]), srgb8_to_linear(c[1]), srgb8_to_linear(c[2])},
           found.roughness,
           found.metalness,
-          found.translucency};
+          found.translucency,
+          found.pattern};
 }
 
 }  // namespace spoonbill

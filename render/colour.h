@@ -19,14 +19,15 @@ float srgb8_to_linear(int value);
 // differ in shape or label, so that nothing depends on distinguishing red from green.
 namespace palette {
 
-inline constexpr Colour fixed_node{28, 150, 84};    // drawn as squares
-inline constexpr Colour touched_node{214, 40, 46};  // drawn as discs
-inline constexpr Colour lattice{52, 62, 74, 150};   // drawn as the thinnest lines
-inline constexpr Colour cell_edge{178, 30, 52};     // drawn as thick lines
+inline constexpr Colour fixed_node{28, 150, 84};       // drawn as squares
+inline constexpr Colour fixed_part{28, 150, 84, 165};  // a tint of the skin
+inline constexpr Colour touched_node{214, 40, 46};     // drawn as discs
+inline constexpr Colour lattice{52, 62, 74, 150};      // drawn as the thinnest lines
+inline constexpr Colour cell_edge{178, 30, 52};        // drawn as thick lines
 inline constexpr Colour far_cell_edge{178, 30, 52, 170};
 inline constexpr Colour control_net{38, 66, 128, 190};  // drawn as thin lines and diamonds
 inline constexpr Colour force{226, 116, 14};            // drawn as an arrow
-inline constexpr Colour contact_normal{112, 46, 134};   // drawn as short lines
+inline constexpr Colour contact_normal{136, 36, 170};   // drawn as short lines
 inline constexpr Colour fixing_plane{28, 150, 84, 40};
 inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
 inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
@@ -46,13 +47,25 @@ inline constexpr Colour text{38, 43, 50};
 
 }  // namespace palette
 
+// The cause of an uneven skin: finger marks, wood grain, pores, or brush marks.
+enum class SurfacePattern { none, smeared, grain, pores, brushed };
+
 // The look of a material. Affects drawing only, not the physics.
 struct SurfaceLook {
   Eigen::Vector3f base_colour = {0.5f, 0.5f, 0.5f};  // linear reflectance; metals: tint of the reflection
   float roughness = 0.6f;                            // 0: mirror, 1: chalk
   float metalness = 0.0f;                            // 0 or 1
-  float translucency = 0.0f;                         // 0: opaque, 1: clear
+  // 0: opaque, up to clear_translucency: light enters the skin, beyond: the other side shows, 1: clear.
+  float translucency = 0.0f;
+  SurfacePattern pattern = SurfacePattern::none;
+
+  bool is_clear() const;
 };
+
+inline constexpr float clear_translucency = 0.4f;
+inline bool SurfaceLook::is_clear() const {
+  return translucency > clear_translucency;
+}
 
 // Returns the look of a material. A table lists words such as "clay" and "steel"; the first of them that the
 // name contains ("modelling-clay", "steel-304") selects the look. Upper and lower case are equal. Other names

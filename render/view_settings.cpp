@@ -16,9 +16,9 @@ constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
 // A frame has spare capacity if its time is at most this fraction of the available time. Entry i is for the
-// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each, and fine
-// tessellation multiplies it by less.
-constexpr std::array<double, 4> spare_fraction = {0.0, 0.45, 0.65, 0.65};
+// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each; the others
+// multiply it by less.
+constexpr std::array<double, 6> spare_fraction = {0.0, 0.65, 0.65, 0.45, 0.65, 0.65};
 
 constexpr int minimum_patience_frames = 120;   // two seconds; the initial value
 constexpr int maximum_patience_frames = 7200;  // two minutes
@@ -38,9 +38,7 @@ double interface_scale_for(int height_px) {
 }
 
 double ground_below(const Box& model) {
-  if (model.is_empty()) return 0.0;
-  constexpr double gap_fraction = 0.01;
-  return model.low.y() - gap_fraction * model.size();
+  return model.is_empty() ? 0.0 : model.low.y();
 }
 
 void FrameBudget::add_frame(double took_s) {
@@ -79,27 +77,25 @@ void FrameBudget::change(FrameQuality quality) {
 }
 
 void FrameBudget::apply(ViewSettings& settings) const {
+  if (quality_ >= FrameQuality::no_occlusion) settings.occlusion = false;
+  if (quality_ >= FrameQuality::no_reflections) settings.reflections = false;
   if (quality_ >= FrameQuality::no_samples) settings.samples = 0;
   if (quality_ >= FrameQuality::no_shadow) settings.shadow = false;
   if (quality_ >= FrameQuality::coarse) settings.detail = std::min(settings.detail, coarse_detail);
 }
 
 std::string FrameBudget::text() const {
-  std::string missing;
-  switch (quality_) {
-    case FrameQuality::full:
-      return {};
-    case FrameQuality::no_samples:
-      missing = "without antialiasing";
-      break;
-    case FrameQuality::no_shadow:
-      missing = "without antialiasing and shadow";
-      break;
-    case FrameQuality::coarse:
-      missing = "coarser, without antialiasing and shadow";
-      break;
+  static constexpr std::array<const char*, 5> omitted = {"occlusion", "reflections", "antialiasing", "shadow",
+                                                         "detail"};
+  const auto count = static_cast<std::size_t>(quality_);
+  if (count == 0) return {};
+  std::string list;
+  for (std::size_t i = 0; i < count; ++i) {
+    list += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + std::string(omitted[i]);
   }
-  return "drawing " + missing + " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz";
+  return "drawing without " + list +
+         (late_frames_ < late_limit / 2 ? " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz"
+                                        : "");
 }
 
 }  // namespace spoonbill

@@ -8,6 +8,7 @@
 #include "engine/base/geometry.h"
 #include "engine/collision/stages/contact_stages.h"
 #include "render/camera.h"
+#include "render/studio.h"
 
 namespace spoonbill {
 
@@ -16,7 +17,7 @@ enum class ContactStage { none, hulls, spheres, triangles, contacts };
 
 // Switches of the overlays. Each overlay has one meaning.
 struct Overlays {
-  bool fixed_nodes = true;       // green squares
+  bool fixed_nodes = true;       // a green tint; squares with the lattice
   bool touched_nodes = true;     // red discs
   bool lattice = false;          // the thinnest lines
   bool cells = false;            // thick lines where the hexahedra of the lattice meet the surface
@@ -41,9 +42,15 @@ struct ViewSettings {
   Overlays overlays;
   std::shared_ptr<const ContactStages> stages;  // contact stages of the snapshot; null draws none
   bool see_through_body = false;                // draws the body as a ghost, so that inner nodes are visible
+  // Returns whether fixed nodes have marks, instead of a tint of the skin.
+  bool marks_fixed_nodes() const { return overlays.fixed_nodes && (overlays.lattice || see_through_body); }
 
   Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; raised above the horizon when drawn
+  Studio studio = studios().front();
+  double studio_turn_rad = 0.0;  // angle by which all lights are turned about the vertical
   bool shadow = true;
+  bool occlusion = true;    // dims light where bodies hide their surroundings
+  bool reflections = true;  // lets shiny bodies mirror the studio
   int samples = 4;          // samples per pixel, 0 or 4
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
   bool keep_level = true;   // lets the tessellation stay slightly too fine or too coarse, to avoid flicker
@@ -56,11 +63,11 @@ struct ViewSettings {
 // Returns the interface scale for a window height: 1 up to 720 pixels, 2 at 1440.
 double interface_scale_for(int height_px);
 
-// Returns the height of the ground for a model: its lowest point minus a gap that prevents contact.
+// Returns the height of the ground on which a model stands: that of its lowest point.
 double ground_below(const Box& model);
 
-// Drawing qualities, from best to worst.
-enum class FrameQuality { full, no_samples, no_shadow, coarse };
+// Drawing qualities, from best to worst: each leaves out one thing more.
+enum class FrameQuality { full, no_occlusion, no_reflections, no_samples, no_shadow, coarse };
 
 // Reduces the drawing quality to hold the frame rate. Its decisions depend only on the times that it
 // receives; it reads no clock. One owner: the drawing thread.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/frames/frame_painter.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 
@@ -58,9 +59,14 @@ void add_size_option(OptionSet parser, Extent& size, const std::string& help) {
       help + " in pixels, each from 64 to 7680; default: 1280x720");
 }
 
-void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every) {
-  add_size_option(parser, size, "Frame size (the panel needs 750x700)");
-  parser.add_option("--every", every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
+PictureSize FrameOptions::picture_size() const {
+  return {size.width, size.height, has_panel};
+}
+
+void add_frame_options(OptionSet parser, FrameOptions& frames) {
+  add_size_option(parser, frames.size, "Frame size");
+  parser.add_flag("--panel", frames.has_panel, "Show the panel beside the scene; it needs 750x700 pixels");
+  parser.add_option("--every", frames.every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
       .limit(Range<std::uint64_t>{1, 1000000})
       .show_as("N");
 }

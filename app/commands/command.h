@@ -17,6 +17,8 @@
 
 namespace spoonbill {
 
+struct PictureSize;
+
 struct CommandEntry {
   OptionSet parser;
   std::function<Status(Console&)> run;
@@ -70,8 +72,17 @@ void add_log_option(OptionSet parser, std::filesystem::path& log);
 // --size: the size of pictures in pixels. `help` begins its description.
 void add_size_option(OptionSet parser, Extent& size, const std::string& help);
 
-// --size and --every: the size of frames in pixels, and the interval between drawn frames.
-void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every);
+// How the frames of a replay or a trial are drawn.
+struct FrameOptions {
+  Extent size{1280, 720};   // in pixels
+  std::uint64_t every = 1;  // interval between drawn frames
+  bool has_panel = false;
+
+  PictureSize picture_size() const;
+};
+
+// --size, --every and --panel.
+void add_frame_options(OptionSet parser, FrameOptions& frames);
 
 // --instruction-set: an instruction set that this processor supports; any other is a usage error.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);

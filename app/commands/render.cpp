@@ -143,6 +143,11 @@ CommandEntry add_render(OptionSet root) {
       [options](const std::string& name) { options->material = name; },
       "Material that all bodies look like, such as steel; default: their own");
   add_parsed_option(
+      parser, "--studio", "NAME[,DEGREES]", parse_studio,
+      [options](const StudioChoice& studio) { options->picture.studio = studio; },
+      "Lights and backdrop: " + list_studios() +
+          "; turned about the vertical by so many degrees; default: " + std::string(studios().front().name));
+  add_parsed_option(
       parser, "--overlays", "LIST", parse_picture_overlays,
       [options](const Overlays& overlays) { options->picture.overlays = overlays; },
       "What is shown beside the model: grid, scale, legend, net, planes, separated by commas; default: "

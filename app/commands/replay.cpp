@@ -9,6 +9,7 @@
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
+#include "app/frames/frame_events.h"
 #include "app/frames/frame_painter.h"
 #include "app/frames/replay_pictures.h"
 #include "app/panel/panel.h"
@@ -21,6 +22,7 @@
 #include "haptic/recording_lines.h"
 #include "haptic/virtual_device.h"
 #include "render/gl/context.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
@@ -29,8 +31,7 @@ struct ReplayOptions {
   OutputOptions how;
   std::filesystem::path recording;
   std::filesystem::path out;
-  Extent size{1280, 720};
-  std::uint64_t every = 1;
+  FrameOptions frames;
   std::filesystem::path video;
   std::filesystem::path rerecord;
   std::filesystem::path log;
@@ -42,11 +43,25 @@ struct ReplayOptions {
 
 struct Replay {
   const ReplayOptions& options;
+  const Recording& recording;
   Session& session;
   Lockstep& lockstep;
   Console& console;
   const RecordingWriter* writer = nullptr;
 };
+
+LockstepInput make_lockstep_input(const Recording& recording, PlaybackDevice& device,
+                                  const std::string& source) {
+  LockstepInput input;
+  input.device = &device;
+  input.tick_count = recording.readings.size();
+  input.commands = recording.commands;
+  input.expected = recording.checkpoints;
+  input.expected_end = recording.end;
+  input.missed = recording.missed;
+  input.source = source;
+  return input;
+}
 
 Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
   interrupt.answer();
@@ -78,10 +93,9 @@ Status run_without_pictures(const Replay& replay) {
 PictureRequest make_picture_request(const ReplayOptions& options, const Lockstep& lockstep,
                                     Console& console) {
   PictureRequest request;
-  request.width_px = options.size.width;
-  request.height_px = options.size.height;
+  request.size = options.frames.picture_size();
   request.frame_count = frame_count(lockstep.tick_count());
-  request.every = options.every;
+  request.every = options.frames.every;
   if (!options.no_frames) request.folder = options.out;
   request.replaces_read_only = options.how.replaces_read_only;
   if (options.video.empty()) return request;
@@ -102,7 +116,7 @@ Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, Rep
       return written;
   }
   if (!painted->is_frame) return {};
-  return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
+  return pictures.add(painted->frame, std::move(painted->picture));
 }
 
 // Runs the replay up to `tick`. Writes each requested document as soon as it is made, which limits the memory
@@ -122,16 +136,68 @@ Status run_and_save(const Replay& replay, const PictureRequest& request, std::ui
   return {};
 }
 
+// The facts that a replay needs before it draws its first frame.
+struct ReplayPlan {
+  double lowest_y_m;              // of the bodies in all frames, because the ground is at one height
+  std::vector<SheetFrame> sheet;  // frames of the contact sheet
+};
+
+// Returns the names of the commands after tick `after` and up to tick `until`, without those of the view.
+std::vector<std::string> find_commands(const Recording& recording, std::uint64_t after, std::uint64_t until) {
+  std::vector<std::string> names;
+  for (const TimedCommand& timed : recording.commands) {
+    const bool is_due = timed.tick <= until && (timed.tick > after || after == 0);
+    if (is_due && !is_view_command(timed.command)) names.push_back(timed.command.value("command", ""));
+  }
+  return names;
+}
+
+// Makes the plan from a replay of its own. Where this replay fails, the one with pictures fails too, and says
+// why.
+ReplayPlan plan_replay(const Replay& replay, const PictureRequest& request, const InterruptWatch& interrupt,
+                       double lowest_y_m) {
+  const Recording& recording = replay.recording;
+  auto session =
+      Session::make(recording.header.document, "", recording.header.device, replay.options.instruction_set);
+  if (!session || recording.readings.empty()) return {lowest_y_m, {}};
+  session->keeps_documents = false;
+  PlaybackDevice device(recording.header.device, recording.readings);
+  session->reading = recording.readings.front();
+  Lockstep lockstep(session.value(), make_lockstep_input(recording, device, ""), nullptr);
+  Snapshot snapshot;
+  FrameEvents events;
+  std::uint64_t last_tick = 0;
+  ProgressBar progress(replay.console, "Planning", replay.options.progress);
+  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); ++frame) {
+    if (!lockstep.run_to(frame_tick(frame))) break;
+    session->marks.clear();
+    write_snapshot(session.value(), snapshot);
+    // The lowest control point is not above its surface.
+    if (framed_box(snapshot).low.y() < lowest_y_m)
+      lowest_y_m = std::min(lowest_y_m, drawn_bounds(snapshot).low.y());
+    if (frame % request.every == 0) {
+      events.add(frame, snapshot.time_s(), snapshot.force_n.norm(),
+                 find_commands(recording, last_tick, lockstep.tick()));
+      last_tick = lockstep.tick();
+    }
+    progress.show(frame + 1, request.frame_count);
+  }
+  return {lowest_y_m, events.choose(sheet_frame_count)};
+}
+
 Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPictures& pictures,
                    const InterruptWatch& interrupt) {
   Snapshot start;
   write_snapshot(replay.session, start);
-  const Box framed = framed_box(start);
-  PaintingCrew crew(request.width_px, request.height_px);
+  Framing framing = find_framing(replay.session.simulation.scene(), start);
+  const ReplayPlan plan = plan_replay(replay, request, interrupt, framing.lowest_y_m);
+  framing.lowest_y_m = plan.lowest_y_m;
+  pictures.choose_sheet(plan.sheet);
+  PaintingCrew crew(request.size.width_px, request.size.height_px);
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   std::vector<std::string> names;
   const auto paint = [&](std::uint64_t frame, bool is_frame) -> Status {
-    PaintingJob job = make_painting_job(frame, replay.session, framed, {request.width_px, request.height_px});
+    PaintingJob job = make_painting_job(frame, replay.session, framing, request.size);
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
     // Only a numbered frame clears the flags of the ticks since the last frame. A screenshot between two
@@ -209,14 +275,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   }
   PlaybackDevice device(recording.header.device, recording.readings);
   if (!recording.readings.empty()) session->reading = recording.readings.front();
-  LockstepInput input;
-  input.device = &device;
-  input.tick_count = recording.readings.size();
-  input.commands = recording.commands;
-  input.expected = recording.checkpoints;
-  input.expected_end = recording.end;
-  input.missed = recording.missed;
-  input.source = source;
+  LockstepInput input = make_lockstep_input(recording, device, source);
   if (log) input.after_tick = [&] { return log->add(session.value()); };
   Lockstep lockstep(session.value(), std::move(input), writer ? &*writer : nullptr);
 
@@ -229,7 +288,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
     facts.add("", "", "missed", recording.missed);
   }
   if (Status ran = run_with_pictures(
-          {options, session.value(), lockstep, console, writer ? &*writer : nullptr}, facts);
+          {options, recording, session.value(), lockstep, console, writer ? &*writer : nullptr}, facts);
       !ran)
     return ran;
   if (writer) {
@@ -265,7 +324,7 @@ void add_picture_options(OptionSet parser, const std::shared_ptr<ReplayOptions>&
       .add_option("--out", options->out,
                   "Folder for frame-####.png and contact-sheet.png; required unless --no-frames is given")
       .show_as("DIR");
-  add_frame_options(parser, options->size, options->every);
+  add_frame_options(parser, options->frames);
   parser
       .add_option("--video", options->video,
                   "Video to write if ffmpeg is installed; its ending selects the format. Default: none")

@@ -31,8 +31,7 @@ namespace {
 struct TryOptions {
   OutputOptions how;
   std::filesystem::path model, out, log;
-  Extent size{1280, 720};
-  std::uint64_t every = 1;
+  FrameOptions frames;
   std::optional<double> seconds, tilt_deg;
   int step_division = 0;  // 0: that of the document
   InstructionSet instruction_set = best_instruction_set();
@@ -74,17 +73,22 @@ TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
 class TrialPictures {
  public:
   TrialPictures(const TryOptions& options, const Session& session)
-      : options_(options), crew_(options.size.width, options.size.height), writer_(options.out) {
+      : options_(options),
+        crew_(options.frames.size.width, options.frames.size.height),
+        writer_(options.out) {
     Snapshot start;
     write_snapshot(session, start);
-    framed_ = find_box_of_motions(session.simulation.scene(), framed_box(start));
+    const Scene& scene = session.simulation.scene();
+    framing_ = find_framing(scene, start);
+    framing_.box = find_box_of_motions(scene, framing_.box);
+    framing_.lowest_y_m = std::min(framing_.lowest_y_m, framing_.box.low.y());
   }
 
   // Draws the present state if a frame is due.
   Status draw(const Trial& trial, Session& session) {
     find_next_frame(session);
     const bool is_due =
-        frame_tick(next_frame_) == session.simulation.tick() && next_frame_ % options_.every == 0;
+        frame_tick(next_frame_) == session.simulation.tick() && next_frame_ % options_.frames.every == 0;
     return is_due ? paint(trial, session) : Status();
   }
 
@@ -112,8 +116,7 @@ class TrialPictures {
     if (crew_.is_full()) {
       if (Status written = write_oldest(); !written) return written;
     }
-    PaintingJob job =
-        make_painting_job(next_frame_, session, framed_, {options_.size.width, options_.size.height});
+    PaintingJob job = make_painting_job(next_frame_, session, framing_, options_.frames.picture_size());
     job.panel.trial = make_trial_rows(trial, session.simulation);
     session.flags = tick_flag_none;
     crew_.start(std::move(job));
@@ -129,7 +132,7 @@ class TrialPictures {
   }
 
   const TryOptions& options_;
-  Box framed_;
+  Framing framing_;
   PaintingCrew crew_;
   FrameWriter writer_;
   std::uint64_t next_frame_ = 0;
@@ -365,7 +368,7 @@ CommandEntry add_try(OptionSet root) {
       .add_option("--out", options->out,
                   "Folder for frame-####.png, the last of which shows the end; default: none")
       .show_as("DIR");
-  add_frame_options(parser, options->size, options->every);
+  add_frame_options(parser, options->frames);
   add_log_option(parser, options->log);
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);

@@ -208,10 +208,10 @@ Status Editor::frame(double seconds) {
   if (Status laid_out = lay_out(frame, seconds); !laid_out) return laid_out;
   handle_pointer(frame, seconds);
   if (space_mouse_) inputs_.update(*space_mouse_, seconds);
-  budget_.apply(shown_);
-  if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
+  budget_.apply(drawn_);
+  if (Status drawn = window_.end_frame(frame.snapshot, drawn_); !drawn) return drawn;
   if (log_) log_->add(shown_frame(frame));
-  if (screenshot_due_) write_screenshot();
+  if (screenshot_ != Screenshot::none) write_screenshot();
   if (window_.window().should_close() && !unsaved_.is_open() && !conflict_.is_open()) {
     window_.window().set_should_close(false);
     finish_document(NextStep::quit);
@@ -292,6 +292,13 @@ ViewSettings Editor::view_settings(double top_px) const {
 }
 
 Status Editor::lay_out(const LiveFrame& frame, double seconds) {
+  screenshot_ = std::exchange(asked_screenshot_, Screenshot::none);
+  if (screenshot_ == Screenshot::scene) {
+    drawn_ =
+        make_view_settings(view_, body_bounds_, window_.width_px(), window_.height_px(), {}, window_.scale());
+    lay_out_labels(frame, drawn_);
+    return {};
+  }
   const Theme& theme = window_.theme();
   ImGui::PushFont(theme.fonts.body);
   MenuState state{
@@ -303,12 +310,11 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   for (const EditAction action : choice.actions) act(action, frame);
   set_overlays(choice);
   shown_ = view_settings(choice.height_px);
-  stage_finder_.fill(frame.snapshot, shown_);
+  lay_out_labels(frame, shown_);
+  drawn_ = shown_;
+  lay_out_panel(frame);
   const int width = window_.width_px();
   const int height = window_.height_px();
-  draw_labels(overlay_labels(frame.snapshot, shown_, width, height), shown_, width, height, *theme.fonts.body,
-              *ImGui::GetBackgroundDrawList());
-  lay_out_panel(frame);
   const auto left = static_cast<float>(shown_.panel_px.x + shown_.panel_px.width);
   messages_.draw(theme, ImVec2(left, static_cast<float>(height)), seconds);
   plots_.draw(theme, ImVec2(static_cast<float>(width), choice.height_px),
@@ -317,6 +323,14 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   lay_out_prompts();
   ImGui::PopFont();
   return {};
+}
+
+void Editor::lay_out_labels(const LiveFrame& frame, ViewSettings& view) {
+  stage_finder_.fill(frame.snapshot, view);
+  const int width = window_.width_px();
+  const int height = window_.height_px();
+  draw_labels(overlay_labels(frame.snapshot, view, width, height), view, width, height,
+              *window_.theme().fonts.body, *ImGui::GetBackgroundDrawList());
 }
 
 void Editor::lay_out_panel(const LiveFrame& frame) {
@@ -553,7 +567,10 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       toggle_recording(frame);
       break;
     case EditAction::screenshot:
-      screenshot_due_ = true;
+      asked_screenshot_ = Screenshot::scene;
+      break;
+    case EditAction::window_screenshot:
+      asked_screenshot_ = Screenshot::window;
       break;
     case EditAction::place_plane:
       place_plane(frame);
@@ -763,7 +780,7 @@ void Editor::toggle_recording(const LiveFrame& frame) {
 }
 
 void Editor::write_screenshot() {
-  screenshot_due_ = false;
+  screenshot_ = Screenshot::none;
   Image picture;
   window_.read_pixels(picture);
   const std::filesystem::path file =

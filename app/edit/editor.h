@@ -69,6 +69,7 @@ class Editor {
   void receive_updates(const LiveFrame& frame, double seconds);
   void handle_completed_jobs(const LiveFrame& frame);
   Status lay_out(const LiveFrame& frame, double seconds);
+  void lay_out_labels(const LiveFrame& frame, ViewSettings& view);
   void lay_out_panel(const LiveFrame& frame);
   void lay_out_prompts();
   ViewSettings view_settings(double top_px) const;
@@ -118,6 +119,7 @@ class Editor {
   Box body_bounds_;
   std::uint64_t session_ = 0;
   ViewSettings shown_;
+  ViewSettings drawn_;  // `shown_`, or without a panel where the frame is for a screenshot of the scene
   StageFinder stage_finder_;
   SurfacePick pick_;
   MouseHand hand_;
@@ -142,7 +144,9 @@ class Editor {
   bool continues_after_save_ = false;
   bool is_finished_ = false;
   bool shows_keys_ = false;
-  bool screenshot_due_ = false;
+  enum class Screenshot { none, scene, window };
+  Screenshot asked_screenshot_ = Screenshot::none;  // to be taken of the next frame
+  Screenshot screenshot_ = Screenshot::none;        // taken of this frame
   // Jobs that the session has not completed, in the order of the requests. nullopt stands for the start of a
   // recording.
   std::vector<std::optional<PendingOpen>> pending_jobs_;

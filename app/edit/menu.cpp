@@ -45,7 +45,8 @@ constexpr auto after_tools = std::to_array<KeyBinding>({
     {Action::view_right, GLFW_KEY_F6, false, false, "F6", "Right view"},
     {Action::view_top, GLFW_KEY_F7, false, false, "F7", "Top view"},
     {Action::view_perspective, GLFW_KEY_F8, false, false, "F8", "Perspective view"},
-    {Action::screenshot, GLFW_KEY_F12, false, false, "F12", "Screenshot"},
+    {Action::screenshot, GLFW_KEY_F12, false, false, "F12", "Screenshot of the scene"},
+    {Action::window_screenshot, GLFW_KEY_F12, false, true, "Shift+F12", "Screenshot with the panel"},
     {Action::toggle_recording, GLFW_KEY_F9, false, false, "F9", "Recording"},
     {Action::quit, GLFW_KEY_Q, true, false, "Ctrl+Q", "Quit"},
     {Action::show_keys, GLFW_KEY_SLASH, false, true, "?", "List of keys"},
@@ -133,7 +134,8 @@ void draw_file(const MenuState& state, const ActionItems& item) {
   item("Export...", EditAction::export_model);
   ImGui::Separator();
   item(state.recording ? "Stop recording" : "Start recording", EditAction::toggle_recording);
-  item("Screenshot", EditAction::screenshot);
+  item("Screenshot of the scene", EditAction::screenshot);
+  item("Screenshot with the panel", EditAction::window_screenshot);
   ImGui::Separator();
   item("Quit", EditAction::quit);
   ImGui::EndMenu();

@@ -28,6 +28,7 @@ enum class EditAction {
   toggle_symmetry,
   toggle_recording,
   screenshot,
+  window_screenshot,
   place_plane,
   remove_planes,
   keep_shape,

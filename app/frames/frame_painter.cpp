@@ -11,6 +11,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "render/overlay/overlays.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
@@ -35,20 +36,28 @@ Box framed_box(const Snapshot& start) {
   return box;
 }
 
-ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px) {
+Framing find_framing(const Scene& scene, const Snapshot& start) {
+  Framing framing{framed_box(start), std::nullopt, drawn_bounds(start).low.y()};
+  if (scene.ground && is_level(*scene.ground)) framing.ground_y_m = scene.ground->point_m.y();
+  return framing;
+}
+
+ViewSettings frame_view(const ViewChoice& choice, const Framing& framing, const PictureSize& size) {
+  const int width_px = size.width_px, height_px = size.height_px;
+  const Rectangle panel_px = size.has_panel ? picture_panel_rectangle(width_px, height_px) : Rectangle{};
   ViewSettings view =
-      make_view_settings(choice, framed, width_px, height_px, picture_panel_rectangle(width_px, height_px),
-                         interface_scale_for(height_px));
+      make_view_settings(choice, framing.box, width_px, height_px, panel_px, interface_scale_for(height_px));
+  view.ground_y_m = framing.ground_y_m.value_or(choice.ground_y_m.value_or(framing.lowest_y_m));
   view.keep_level = false;
   return view;
 }
 
-PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Box& framed,
+PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Framing& framing,
                               const PictureSize& size) {
   PaintingJob job;
   job.frame = frame;
   write_snapshot(session, job.snapshot);
-  job.view = frame_view(session.view, framed, size.width_px, size.height_px);
+  job.view = frame_view(session.view, framing, size);
   SessionFacts facts;
   write_facts(session, facts);
   job.panel = make_panel_model(facts, job.snapshot, job.view);

@@ -20,13 +20,29 @@
 
 namespace spoonbill {
 
-// Returns the box around all control nets and meshes of a snapshot. The box of the initial state determines
-// the camera and the ground in all frames of a replay.
+// Returns the box around all control nets and meshes of a snapshot.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings for drawing the chosen view in a frame of this size, with room for the panel. With
-// these settings, the tessellation of a frame does not depend on earlier frames.
-ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
+// The camera and the ground that all frames of a replay have in common.
+struct Framing {
+  Box box;  // what the camera shows where the view leaves this open: the bodies at the start
+  // Height of the level ground on which the bodies stand; empty if the scene has none.
+  std::optional<double> ground_y_m;
+  double lowest_y_m = 0.0;  // lowest point of the bodies in all frames, where the ground is drawn otherwise
+};
+
+// Returns the framing of a scene whose bodies do not move below where they are in `start`.
+Framing find_framing(const Scene& scene, const Snapshot& start);
+
+struct PictureSize {
+  int width_px = 0;
+  int height_px = 0;
+  bool has_panel = false;  // whether a part of the picture is for the panel
+};
+
+// Returns the settings for drawing the chosen view in a frame. With these settings, the tessellation of a
+// frame does not depend on earlier frames.
+ViewSettings frame_view(const ViewChoice& choice, const Framing& framing, const PictureSize& size);
 
 // Paints snapshots into images. A painter must be used on the thread that made it.
 class FramePainter {
@@ -40,7 +56,7 @@ class FramePainter {
   FramePainter& operator=(FramePainter&&) = delete;
   ~FramePainter();
 
-  // Paints one frame. The panel is omitted if the frame is too small for it.
+  // Paints one frame, with the panel if the view has room for it.
   Status paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel, Image& image);
 
  private:
@@ -59,11 +75,6 @@ class FramePainter {
   StageFinder stages_;
 };
 
-struct PictureSize {
-  int width_px = 0;
-  int height_px = 0;
-};
-
 // Everything that a frame shows, copied so that the session can continue.
 struct PaintingJob {
   std::uint64_t frame = 0;
@@ -74,9 +85,8 @@ struct PaintingJob {
   bool is_frame = true;  // false if the picture is painted only for the files of `extra_names`
 };
 
-// Returns the job that paints the session's current state in a frame of this size. `framed` is the
-// framed_box() of the initial state.
-PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Box& framed,
+// Returns the job that paints the session's current state in a frame of this size.
+PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Framing& framing,
                               const PictureSize& size);
 
 // A painted frame.

@@ -12,15 +12,13 @@
 #include "app/frames/frame_painter.h"
 #include "engine/base/text.h"
 #include "render/camera.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180.0;
 constexpr Range<double> azimuth_range_deg{-360.0, 360.0}, elevation_range_deg{-90.0, 90.0};
-
-// A ground is drawn level if its normal is steeper than this.
-constexpr double level_normal_y = 0.9999;
 
 // Part of the picture that the model fills in the tighter direction.
 constexpr double picture_fraction = 0.8;
@@ -87,6 +85,27 @@ Result<ViewDirection> parse_view_direction(std::string_view text) {
   return ViewDirection{azimuth_deg.value() * radians_per_degree, elevation_deg.value() * radians_per_degree};
 }
 
+std::string list_studios() {
+  std::string list;
+  for (const Studio& studio : studios()) list += (list.empty() ? "" : ", ") + std::string(studio.name);
+  return list;
+}
+
+Result<StudioChoice> parse_studio(std::string_view text) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const Studio* const studio = find_studio(text.substr(0, comma));
+  if (studio == nullptr) {
+    return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is unknown; choose from " + list_studios() +
+                                         ", and add ,DEGREES to turn it"};
+  }
+  StudioChoice choice{*studio, 0.0};
+  if (comma == text.size()) return choice;
+  const auto turn_deg = parse_degrees(text.substr(comma + 1), azimuth_range_deg, "the turn");
+  if (!turn_deg) return turn_deg.error();
+  choice.turn_rad = turn_deg.value() * radians_per_degree;
+  return choice;
+}
+
 Overlays no_overlays() {
   Overlays overlays;
   for (bool Overlays::*shown : {&Overlays::fixed_nodes, &Overlays::touched_nodes, &Overlays::force,
@@ -135,19 +154,27 @@ void show_material(const std::string& name, ShownModel& model) {
 namespace {
 
 // Number of points of each body that are fitted into the picture.
-constexpr std::size_t fitted_point_count = 20'000;
+constexpr std::size_t fitted_point_count = 200'000;
 
-// Returns control points and vertices: all of them, or every n-th one of a large body.
+// Returns the vertices of the drawn triangles: all of them, or every n-th corner of a large body. A trimmed
+// face does not reach to its control points.
 std::vector<Vector3> points_to_fit(const Snapshot& snapshot) {
+  constexpr int pieces = 4;
   std::vector<Vector3> points_m;
-  const auto append = [&](const auto& net) {
-    const std::size_t stride = 1 + net.x.size() / fitted_point_count;
-    for (std::size_t i = 0; i < net.x.size(); i += stride)
-      points_m.emplace_back(net.x[i], net.y[i], net.z[i]);
-  };
   for (const BodySnapshot& body : snapshot.bodies) {
-    append(body.surface);
-    append(body.mesh);
+    TessellatedSurface drawn;
+    if (body.is_mesh()) {
+      drawn.update(body.mesh);
+    } else if (!check_net(body.surface) ||
+               !drawn.update(body.surface, uniform_sampling_level(body.surface, pieces))) {
+      continue;
+    }
+    const GridSamples<float>& at = drawn.samples();
+    const std::size_t stride = 1 + drawn.indices().size() / fitted_point_count;
+    for (std::size_t i = 0; i < drawn.indices().size(); i += stride) {
+      const std::uint32_t v = drawn.indices()[i];
+      points_m.emplace_back(at.x[v], at.y[v], at.z[v]);
+    }
   }
   return points_m;
 }
@@ -162,10 +189,12 @@ ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& p
                       make_viewport(picture.width_px, picture.height_px, {}), picture_fraction);
   view.interface_scale = interface_scale_for(picture.height_px);
   view.overlays = picture.overlays;
+  view.studio = picture.studio.studio;
+  view.studio_turn_rad = picture.studio.turn_rad;
   view.keep_level = false;
   view.is_transparent = picture.is_transparent;
-  const bool is_level = model.ground && model.ground->normal.y() > level_normal_y;
-  view.ground_y_m = is_level ? model.ground->point_m.y() : framed_box(model.snapshot).low.y();
+  view.ground_y_m = model.ground && is_level(*model.ground) ? model.ground->point_m.y()
+                                                            : drawn_bounds(model.snapshot).low.y();
   return view;
 }
 
@@ -179,7 +208,7 @@ std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureS
     distance_m = std::max(distance_m, views.back().camera.distance_m);
   }
   for (ViewSettings& view : views) {
-    view.camera.target_m = framed_box(model.snapshot).centre();
+    view.camera.target_m = drawn_bounds(model.snapshot).centre();
     view.camera.distance_m = distance_m;
   }
   return views;

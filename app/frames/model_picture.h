@@ -26,6 +26,17 @@ ViewDirection default_view_direction();
 // azimuth turns the eye to the right around the model, the elevation raises it.
 Result<ViewDirection> parse_view_direction(std::string_view text);
 
+// A studio, turned about the vertical.
+struct StudioChoice {
+  Studio studio = studios().front();
+  double turn_rad = 0.0;
+};
+
+// Parses the name of a studio, and degrees by which it is turned: "dark,30".
+Result<StudioChoice> parse_studio(std::string_view text);
+// Returns the names of all studios, separated by commas.
+std::string list_studios();
+
 // Parses the names of overlays, such as "grid,net". Without a name nothing but the model is shown.
 Result<Overlays> parse_picture_overlays(std::string_view text);
 
@@ -41,6 +52,7 @@ void show_material(const std::string& name, ShownModel& model);
 struct PictureSettings {
   ViewDirection direction = default_view_direction();
   Overlays overlays = no_overlays();
+  StudioChoice studio;
   bool is_transparent = false;
   int width_px = 1280, height_px = 720;
 };

@@ -311,21 +311,13 @@ Status VideoEncoder::finish() {
 
 namespace {
 
-constexpr std::uint64_t sheet_cells = 12;
-
 ContactSheetLayout sheet_layout() {
   ContactSheetLayout layout;
   layout.columns = 3;
   layout.cell_width_px = 480;
-  layout.caption_px = 18;
+  layout.caption_px = 20;
   layout.caption_font_path = font_file;
   return layout;
-}
-
-std::string seconds_text(double time_s) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f s", time_s);
-  return text.data();
 }
 
 }  // namespace
@@ -337,7 +329,7 @@ Result<ReplayPictures> ReplayPictures::start(const PictureRequest& request) {
   }
   std::optional<VideoEncoder> video;
   if (request.video) {
-    auto started = VideoEncoder::start(*request.video, request.width_px, request.height_px,
+    auto started = VideoEncoder::start(*request.video, request.size.width_px, request.size.height_px,
                                        static_cast<int>(frames_per_second), static_cast<int>(request.every));
     if (!started) return started.error();
     video.emplace(std::move(started).value());
@@ -350,27 +342,18 @@ ReplayPictures::ReplayPictures(PictureRequest request, std::optional<VideoEncode
   if (request_.folder) frames_ = std::make_unique<FrameWriter>(*request_.folder);
 }
 
-Status ReplayPictures::add(std::uint64_t frame, double time_s, Image picture) {
+Status ReplayPictures::add(std::uint64_t frame, Image picture) {
   if (video_) {
     if (Status added = video_->add(picture); !added) return added;
   }
   if (frames_) {
-    if (belongs_on_sheet(count_)) sheet_.add(picture, seconds_text(time_s));
+    for (const SheetFrame& each : sheet_frames_) {
+      if (each.frame == frame) sheet_.add(picture, each.caption);
+    }
     if (Status added = frames_->add(static_cast<int>(frame), std::move(picture)); !added) return added;
   }
   ++count_;
   return {};
-}
-
-bool ReplayPictures::belongs_on_sheet(std::uint64_t index) const {
-  const std::uint64_t drawn = (request_.frame_count + request_.every - 1) / request_.every;
-  if (drawn <= sheet_cells) return true;
-  // The sheet shows the first frame, the last, and others at even intervals.
-  constexpr std::uint64_t steps = sheet_cells - 1;
-  for (std::uint64_t cell = 0; cell <= steps; ++cell) {
-    if (index == cell * (drawn - 1) / steps) return true;
-  }
-  return false;
 }
 
 Status ReplayPictures::finish() {

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/frames/frame_events.h"
+#include "app/frames/frame_painter.h"
 #include "app/session/session.h"
 #include "engine/base/result.h"
 #include "engine/base/unfinished_files.h"
@@ -100,8 +102,7 @@ class VideoEncoder {
 
 // Frames and files that a replay is to write.
 struct PictureRequest {
-  int width_px = 0;
-  int height_px = 0;
+  PictureSize size;
   std::uint64_t frame_count = 0;  // frames of the whole replay, 60 per second
   std::uint64_t every = 1;        // interval between drawn frames, in frames
   // Folder for the frames and the contact sheet. If empty, neither frames nor contact sheet are written.
@@ -110,14 +111,20 @@ struct PictureRequest {
   bool replaces_read_only = false;  // if true, read-only files of earlier runs are replaced too
 };
 
+// Number of frames on a contact sheet.
+inline constexpr std::size_t sheet_frame_count = 12;
+
 // Writes the pictures of a replay. Used by one thread.
 class ReplayPictures {
  public:
   // Prepares the folder and starts the video.
   static Result<ReplayPictures> start(const PictureRequest& request);
 
-  // Adds frame number `frame`, a multiple of `every`, at time `time_s`.
-  Status add(std::uint64_t frame, double time_s, Image picture);
+  // Chooses the frames of the contact sheet. Call before add().
+  void choose_sheet(std::vector<SheetFrame> frames) { sheet_frames_ = std::move(frames); }
+
+  // Adds frame number `frame`, a multiple of `every`.
+  Status add(std::uint64_t frame, Image picture);
 
   // Waits until everything is written.
   Status finish();
@@ -127,12 +134,12 @@ class ReplayPictures {
 
  private:
   ReplayPictures(PictureRequest request, std::optional<VideoEncoder> video);
-  bool belongs_on_sheet(std::uint64_t index) const;
 
   PictureRequest request_;
   std::unique_ptr<FrameWriter> frames_;  // null if there is no folder
   std::optional<VideoEncoder> video_;
   ContactSheet sheet_;
+  std::vector<SheetFrame> sheet_frames_;
   std::uint64_t count_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "engine/base/geometry.h"
 #include "haptic/virtual_device.h"
 #include "render/gl/context.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
@@ -27,19 +28,20 @@ class Painting {
     retain_freed_memory();
     auto painter = FramePainter::make(width_px, height_px);
     if (!painter) return painter.error();
-    return Painting(std::move(painter).value(), framed_box(first.snapshot));
+    return Painting(std::move(painter).value(),
+                    Framing{framed_box(first.snapshot), {}, drawn_bounds(first.snapshot).low.y()});
   }
 
   Status paint(const LiveFrame& frame, const ViewChoice& choice) {
-    const ViewSettings view = frame_view(choice, framed_, width_px, height_px);
+    const ViewSettings view = frame_view(choice, framing_, {width_px, height_px, true});
     return painter_.paint(frame.snapshot, view, make_panel_model(frame.facts, frame.snapshot, view),
                           picture_);
   }
 
  private:
-  Painting(FramePainter painter, const Box& framed) : painter_(std::move(painter)), framed_(framed) {}
+  Painting(FramePainter painter, const Framing& framing) : painter_(std::move(painter)), framing_(framing) {}
   FramePainter painter_;
-  Box framed_;
+  Framing framing_;
   Image picture_;
 };
 

@@ -74,7 +74,6 @@ def main():
         "sculpting": {"drag_per_s": 32.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": FORCE_SCALES[name]},
         "view": {
             "camera": {"yaw_deg": 30, "pitch_deg": 30, "target_mm": [0, 2, 0], "distance_mm": 150},
-            "ground_mm": -11,
         },
     }
     write(document)

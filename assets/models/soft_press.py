@@ -63,7 +63,6 @@ def main():
         "sculpting": {"drag_per_s": 32.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
         "view": {
             "camera": {"yaw_deg": 28, "pitch_deg": 14, "target_mm": [0, 8, 0], "distance_mm": 215},
-            "ground_mm": -13,
         },
     }
     write(document)

@@ -38,7 +38,6 @@ def main():
         "sculpting": {"drag_per_s": 12.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {
             "camera": {"yaw_deg": 30, "pitch_deg": 35, "target_mm": [134, -4, 0], "distance_mm": 170},
-            "ground_mm": -46,
         },
     }
     write(document)

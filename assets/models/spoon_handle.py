@@ -79,7 +79,6 @@ def main():
         "sculpting": {"drag_per_s": 12.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {
             "camera": {"yaw_deg": 22, "pitch_deg": 16, "target_mm": [57, -7, 0], "distance_mm": 250},
-            "ground_mm": -46,
         },
     }
     write(document)

@@ -79,6 +79,11 @@ struct Ground {
   double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
+// Returns whether a ground is level, within a degree.
+inline bool is_level(const Ground& ground) {
+  return ground.normal.y() > 0.9999;
+}
+
 // Returns the displacement of a moving support at `time_s`, which must not be negative.
 Vector3 displacement_at(const SupportMotion& motion, double time_s);
 // Returns the highest speed of a motion.

@@ -101,18 +101,21 @@ constexpr float net_radius_px = 2.0f;
 
 }  // namespace
 
-float mean_edge_m(const LatticeSnapshot& lattice) {
-  double length[3] = {0, 0, 0};
-  std::size_t edges[3] = {0, 0, 0};
+std::array<double, 3> mean_edges_m(const LatticeSnapshot& lattice) {
+  std::array<double, 3> length{};
+  std::array<std::size_t, 3> edges{};
   for_each_edge(lattice, [&](int axis, std::size_t a, std::size_t b) {
     length[axis] += (node(lattice, b) - node(lattice, a)).norm();
     ++edges[axis];
   });
+  for (int axis = 0; axis < 3; ++axis) length[axis] /= std::max<std::size_t>(edges[axis], 1);
+  return length;
+}
+
+float mean_edge_m(const LatticeSnapshot& lattice) {
   double shortest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (edges[axis] == 0) continue;
-    const double mean = length[axis] / static_cast<double>(edges[axis]);
-    if (shortest == 0.0 || mean < shortest) shortest = mean;
+  for (const double mean : mean_edges_m(lattice)) {
+    if (mean > 0.0 && (shortest == 0.0 || mean < shortest)) shortest = mean;
   }
   return static_cast<float>(shortest);
 }

@@ -145,7 +145,8 @@ std::vector<Label> make_legend(const Snapshot& snapshot, const ViewSettings& set
     add(count_text("touched nodes", touched), LabelSymbol::disc, palette::touched_node);
   }
   if (on.fixed_nodes && fixed > 0) {
-    add(count_text("fixed nodes", fixed), LabelSymbol::square, palette::fixed_node);
+    add(settings.marks_fixed_nodes() ? count_text("fixed nodes", fixed) : "fixed part", LabelSymbol::square,
+        palette::fixed_node);
   }
   if (on.fixing_planes && !snapshot.planes.empty()) {
     add("fixing plane", LabelSymbol::plane, palette::fixing_plane_border);

@@ -61,8 +61,11 @@ struct OverlayArrow {
 
 // Overlays of the lattice and of the control net, defined in body_overlays.cpp.
 
-// Returns the smallest of the three mean edge lengths along the directions of the lattice, in metres: the
-// space available for marks. Zero for a lattice without edges.
+// Returns the mean edge lengths along the directions of the lattice, in metres; zero without edges.
+std::array<double, 3> mean_edges_m(const LatticeSnapshot& lattice);
+
+// Returns the smallest of them that is above zero: the space available for marks. Zero for a lattice without
+// edges.
 float mean_edge_m(const LatticeSnapshot& lattice);
 
 // Appends a green square for each fixed node that is not touched and is on the surface of the body or next to
@@ -96,8 +99,8 @@ void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>
 
 using PlaneCorners = std::array<Vector3, 4>;  // in order around a rectangle
 
-// Returns an upright rectangle in a fixing plane. It encloses the fixed nodes, because these do not move
-// while the body bends. If no node is fixed, it encloses the box of the body.
+// Returns an upright rectangle in a fixing plane. It encloses the fixed nodes near the plane, because these
+// do not move while the body bends. If there are none, it encloses the box of the body.
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const Box& body);
 

@@ -7,7 +7,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr double fixing_overhang_fraction = 0.45;  // margin on each side / longer side of the rectangle
+constexpr double fixing_overhang_fraction = 0.3;  // margin on each side / longer side of the rectangle
+// Fixed nodes within this distance of a plane count as its section of the body, in mean edges.
+constexpr double section_edges = 1.5;
 constexpr float border_width_px = 1.4f;
 
 struct PlaneAxes {
@@ -38,9 +40,11 @@ Box2 compute_extent(const PlaneSnapshot& plane, const std::vector<BodySnapshot>&
   Box2 extent;
   for (const BodySnapshot& each : bodies) {
     const LatticeSnapshot& lattice = each.lattice;
+    const double reach_m = section_edges * static_cast<double>(mean_edge_m(lattice));
     for (std::size_t i = 0; i < lattice.x.size(); ++i) {
-      if (lattice.fixed[i] == 0) continue;
-      extent.include(project_on(axes, Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m));
+      const Vector3 offset = Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m;
+      if (lattice.fixed[i] == 0 || std::abs(offset.dot(plane.normal)) > reach_m) continue;
+      extent.include(project_on(axes, offset));
     }
   }
   return extent.is_empty() ? compute_extent(plane, body, axes) : extent;

@@ -11,21 +11,21 @@
 namespace spoonbill {
 namespace {
 
-constexpr double bottom_srgb[3] = {238.0, 238.5, 239.0};
-constexpr double top_srgb[3] = {196.0, 200.0, 205.0};
-
-// Ordered dithering of rows hides the steps of eight-bit colours. Each row has one colour, which keeps PNG
-// files small and fast to write.
+// Ordered dithering of rows hides the steps of eight-bit colours. It is by less than a step, so that
+// neighbouring rows differ by at most one. Each row has one colour, which keeps PNG files small and fast to
+// write.
+constexpr double dithered_part = 0.7;
 constexpr int pattern_rows = 8;
 constexpr int pattern[pattern_rows] = {0, 4, 2, 6, 1, 5, 3, 7};
 
 std::uint8_t dithered(double value, int row) {
-  const double threshold = (pattern[row % pattern_rows] + 0.5) / pattern_rows;
+  const double threshold = 0.5 + dithered_part * ((pattern[row % pattern_rows] + 0.5) / pattern_rows - 0.5);
   return static_cast<std::uint8_t>(std::floor(value + threshold));
 }
 
 // Returns the gradient as RGBA8, bottom row first.
-std::vector<std::uint8_t> gradient(int width_px, int height_px) {
+std::vector<std::uint8_t> gradient(const Studio& studio, int width_px, int height_px) {
+  const Eigen::Vector3d top = studio.top_srgb.cast<double>(), bottom = studio.bottom_srgb.cast<double>();
   std::vector<std::uint8_t> texels;
   texels.reserve(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
   for (int y = 0; y < height_px; ++y) {
@@ -34,7 +34,7 @@ std::vector<std::uint8_t> gradient(int width_px, int height_px) {
     std::uint8_t colour[4] = {0, 0, 0, 255};
     // The channels are dithered with different offsets; otherwise rows would be visible.
     for (int c = 0; c < 3; ++c) {
-      colour[c] = dithered(bottom_srgb[c] + fraction * (top_srgb[c] - bottom_srgb[c]), y + 3 * c);
+      colour[c] = dithered(bottom[c] + fraction * (top[c] - bottom[c]), y + 3 * c);
     }
     for (int x = 0; x < width_px; ++x) texels.insert(texels.end(), colour, colour + 4);
   }
@@ -83,22 +83,26 @@ void main() { result = texelFetch(scene, ivec2(gl_FragCoord.xy), 0); }
 
 }  // namespace
 
-void BackgroundPass::build(int width_px, int height_px) {
+void BackgroundPass::build(const Studio& studio, int width_px, int height_px) {
   picture_ = make_texture(*gl_);
   gl_->BindTexture(GL_TEXTURE_2D, picture_.id());
   gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_px, height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                  gradient(width_px, height_px).data());
+                  gradient(studio, width_px, height_px).data());
   gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   framebuffer_ = make_framebuffer(*gl_);
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_.id(), 0);
   width_px_ = width_px;
   height_px_ = height_px;
+  top_srgb_ = studio.top_srgb;
+  bottom_srgb_ = studio.bottom_srgb;
 }
 
-void BackgroundPass::draw(const RenderTarget& target) {
+void BackgroundPass::draw(const Studio& studio, const RenderTarget& target) {
   const int width = target.width_px(), height = target.height_px();
-  if (width != width_px_ || height != height_px_) build(width, height);
+  const bool is_built = width == width_px_ && height == height_px_ && studio.top_srgb == top_srgb_ &&
+                        studio.bottom_srgb == bottom_srgb_;
+  if (!is_built) build(studio, width, height);
   target.begin_frame();
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
   gl_->BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);

@@ -11,22 +11,23 @@
 
 namespace spoonbill {
 
-// Draws the vertical gradient behind the scene. The gradient is made once for each frame size and copied to
-// every frame, which takes a tenth of the time that drawing it would take.
+// Draws the vertical gradient behind the scene. The gradient is made once for each frame size and studio, and
+// copied to every frame, which takes a tenth of the time that drawing it would take.
 class BackgroundPass {
  public:
   explicit BackgroundPass(const GlFunctions& gl) : gl_(&gl) {}
 
   // Writes every pixel of the target's frame layer and leaves this layer bound.
-  void draw(const RenderTarget& target);
+  void draw(const Studio& studio, const RenderTarget& target);
 
  private:
-  void build(int width_px, int height_px);
+  void build(const Studio& studio, int width_px, int height_px);
 
   const GlFunctions* gl_;
   GlHandle picture_;
   GlHandle framebuffer_;
   int width_px_ = 0, height_px_ = 0;
+  Eigen::Vector3f top_srgb_, bottom_srgb_;
 };
 
 // Draws the shadows on the ground. The ground itself is not drawn, so that it has no edge: the background

@@ -1,4 +1,4 @@
-// Data that all passes share: the view of one frame, and GLSL for lights and shadows. World space in metres,
+// Data that all passes share: the view of one frame, and GLSL for shadows. World space in metres,
 // linear light.
 #pragma once
 
@@ -6,6 +6,7 @@
 
 #include "render/camera.h"
 #include "render/gl/pipeline.h"
+#include "render/studio.h"
 #include "render/view_settings.h"
 
 namespace spoonbill {
@@ -17,6 +18,8 @@ struct FrameView {
   Eigen::Vector3f eye_m;
   Eigen::Vector3f eye_right, eye_up;  // unit vectors
   Eigen::Vector3f toward_key;         // unit vector, at least 11 degrees above the horizon
+  Studio studio;
+  float studio_turn_rad = 0.0f;  // angle by which the lights that move with the eye are turned
   float ground_y_m = 0.0f;
   float interface_scale = 1.0f;
   float nearest_depth_m = 0.0f;    // depth at which lines are clipped before they are widened
@@ -25,8 +28,7 @@ struct FrameView {
 
 FrameView make_frame_view(const ViewSettings& settings, int width_px, int height_px);
 
-// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y, and the
-// directions of the lights that move with the eye: toward_fill, toward_rim, toward_strip.
+// Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y.
 void set_frame_uniforms(const Program& program, const FrameView& view);
 
 // A vertex shader for passes over a whole viewport: draws one triangle that covers it from three vertices
@@ -41,10 +43,5 @@ extern const char* const key_light_glsl;
 // occlusion of the sky approximates the exact formula for a sphere above a plane. Uniforms: tool_centre,
 // tool_radius (0 without a tool).
 extern const char* const sphere_shadow_glsl;
-
-// Functions for the lights and materials of the studio. studio_light() returns the light from a surface point
-// to the eye; opaque_colour() and clear_colour() encode it to sRGB. Uniforms: eye, ground_y, toward_fill,
-// toward_rim, toward_strip.
-extern const char* const studio_light_glsl;
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 
 namespace spoonbill {
@@ -10,14 +11,17 @@ namespace spoonbill {
 SurfaceBuffers::SurfaceBuffers(const GlFunctions& gl)
     : gl_(&gl), vertex_array_(make_vertex_array(gl)), vertices_(make_buffer(gl)), indices_(make_buffer(gl)) {}
 
-void SurfaceBuffers::upload(const TessellatedSurface& surface) {
+void SurfaceBuffers::upload(const TessellatedSurface& surface, const std::vector<float>& visibility,
+                            const std::vector<float>& tint) {
+  SPOONBILL_ASSERT(visibility.size() == surface.vertex_count() && tint.size() == surface.vertex_count());
   const GridSamples<float>& samples = surface.samples();
   const std::size_t plane_bytes = surface.vertex_count() * sizeof(float);
   gl_->BindVertexArray(vertex_array_.id());
   gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(6 * plane_bytes), nullptr, GL_STREAM_DRAW);
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(8 * plane_bytes), nullptr, GL_STREAM_DRAW);
   GLuint attribute = 0;
-  for (const auto* plane : {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz}) {
+  for (const auto* plane :
+       {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz, &visibility, &tint}) {
     const std::size_t start = attribute * plane_bytes;
     gl_->BufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(start), static_cast<GLsizeiptr>(plane_bytes),
                        plane->data());
@@ -40,8 +44,10 @@ void SurfaceBuffers::draw() const {
   gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level) {
+Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level,
+                          bool is_occluded) {
   surfaces_.resize(snapshot.bodies.size());
+  tints_.resize(snapshot.bodies.size());
   while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
   while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
   bounds_ = {};
@@ -55,10 +61,19 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, boo
       const SamplingLevel level = choose_sampling_level(body.surface, pixels_per_metre, last);
       if (Status updated = surfaces_[i].update(body.surface, level); !updated) return updated;
     }
-    buffers_[i].upload(surfaces_[i]);
     const Box one = surfaces_[i].bounds();
     if (one.is_empty()) continue;
     bounds_.join(one);
+  }
+  if (is_occluded) {
+    occlusion_.update(surfaces_);
+  } else {
+    occlusion_ = {};
+  }
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (!is_occluded) open_.assign(surfaces_[i].vertex_count(), 1.0f);
+    tints_[i].update(snapshot.bodies[i].lattice, surfaces_[i], keep_level);
+    buffers_[i].upload(surfaces_[i], is_occluded ? occlusion_.visibility(i) : open_, tints_[i].weights());
   }
   return {};
 }

@@ -9,20 +9,24 @@
 #include "engine/base/result.h"
 #include "engine/simulation/snapshot.h"
 #include "render/gl/pipeline.h"
+#include "render/overlay/fixed_tint.h"
+#include "render/tessellation/ambient_occlusion.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 
 // A tessellated surface in GL buffers: the indices, and a separate array for each attribute (x, y, z, nx, ny,
-// nz at locations 0 to 5).
+// nz, visibility and tint at locations 0 to 7).
 class SurfaceBuffers {
  public:
   explicit SurfaceBuffers(const GlFunctions& gl);
 
   // Uploads the samples, and the indices if the topology has changed. The old storage is orphaned, because
   // overwriting it would wait for the frame that still reads it.
-  void upload(const TessellatedSurface& surface);
+  // `visibility` and `tint` have a value for each vertex (see AmbientOcclusion and FixedTint).
+  void upload(const TessellatedSurface& surface, const std::vector<float>& visibility,
+              const std::vector<float>& tint);
 
   // Draws the surface with the program in use.
   void draw() const;
@@ -46,8 +50,8 @@ class BodyMeshes {
 
   // Updates all surfaces to the snapshot. If `keep_level`, the tessellation level of the last frame is kept
   // while it is neither too coarse nor much too fine. Returns the error of the first surface that cannot be
-  // tessellated.
-  Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
+  // tessellated. Visibility is computed only if `is_occluded`; otherwise it is 1.
+  Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level, bool is_occluded);
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
@@ -57,6 +61,9 @@ class BodyMeshes {
   const GlFunctions* gl_;
   std::vector<TessellatedSurface> surfaces_;
   std::vector<SurfaceBuffers> buffers_;
+  AmbientOcclusion occlusion_;
+  std::vector<FixedTint> tints_;
+  std::vector<float> open_;  // visibility without occlusion
   Box bounds_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "engine/base/geometry.h"
 #include "render/overlay/overlays.h"
+#include "render/passes/material_patterns.h"
 #include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
@@ -52,13 +53,14 @@ ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const Vi
   return {centre, pixels_at(view, centre, smallest_tool_px)};
 }
 
-SurfaceLook choose_look(const BodySnapshot& body, const ViewSettings& settings) {
-  SurfaceLook look = find_material_look(body.material.name);
+SurfaceDrawing choose_drawing(const BodySnapshot& body, const ViewSettings& settings) {
+  SurfaceDrawing drawing{find_material_look(body.material.name), find_pattern_frame(body), settings.occlusion,
+                         settings.reflections, settings.overlays.fixed_nodes};
   if (settings.see_through_body) {
-    look.translucency = ghost_translucency;
-    look.metalness = 0.0f;
+    drawing.look.translucency = ghost_translucency;
+    drawing.look.metalness = 0.0f;
   }
-  return look;
+  return drawing;
 }
 
 Box bounding_box(const ToolSphere& tool) {
@@ -76,8 +78,6 @@ Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
   if (!ground) return ground.error();
   auto shadow = ShadowPass::make(gl);
   if (!shadow) return shadow.error();
-  auto surface = SurfacePass::make(gl);
-  if (!surface) return surface.error();
   auto solid = SolidPass::make(gl);
   if (!solid) return solid.error();
   auto line = LinePass::make(gl);
@@ -91,9 +91,16 @@ Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
   auto resolve = ResolvePass::make(gl);
   if (!resolve) return resolve.error();
   return ScenePasses(Passes{BackgroundPass(gl), std::move(ground).value(), std::move(shadow).value(),
-                            std::move(surface).value(), std::move(solid).value(), std::move(line).value(),
+                            SurfacePass(gl), std::move(solid).value(), std::move(line).value(),
                             std::move(mark).value(), std::move(shell).value(), std::move(triangle).value(),
                             std::move(resolve).value(), ToolBuffers(gl)});
+}
+
+Status ScenePasses::prepare(const Snapshot& snapshot, const ViewSettings& settings) {
+  for (const BodySnapshot& body : snapshot.bodies) {
+    if (Status made = passes_.surface.prepare(choose_drawing(body, settings).variant()); !made) return made;
+  }
+  return {};
 }
 
 void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
@@ -111,7 +118,7 @@ void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const Vi
   if (settings.is_transparent) {
     target.clear_frame();
   } else {
-    passes_.background.draw(target);
+    passes_.background.draw(view.studio, target);
   }
   draw_ground(view, settings);
   passes_.resolve.draw(target, areas);
@@ -122,11 +129,11 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
                              const BodyMeshes& bodies) {
   const ToolSphere tool = tool_sphere(view, snapshot, settings);
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
-  const auto draw_bodies = [&](bool translucent) {
+  const auto draw_bodies = [&](bool are_clear) {
     for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {
-      const SurfaceLook look = choose_look(snapshot.bodies[b], settings);
-      if ((look.translucency > 0.0f) != translucent) continue;
-      passes_.surface.draw(view, bodies.buffers()[b], look, tool, shadow);
+      const SurfaceDrawing drawing = choose_drawing(snapshot.bodies[b], settings);
+      if (drawing.look.is_clear() != are_clear) continue;
+      passes_.surface.draw(view, bodies.buffers()[b], drawing, tool, shadow);
     }
   };
   draw_bodies(false);
@@ -182,7 +189,7 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   for (const BodySnapshot& body : snapshot.bodies) {
     if (on.lattice) append_lattice_lines(body.lattice, settings.see_through_body, lines_);
     if (on.control_net && !body.is_mesh()) append_control_net(body.surface, lines_, marks_);
-    if (on.fixed_nodes) append_fixed_marks(body.lattice, settings.see_through_body, marks_);
+    if (settings.marks_fixed_nodes()) append_fixed_marks(body.lattice, settings.see_through_body, marks_);
   }
   if (on.contact_normals) {
     append_contact_normals(snapshot.contacts, contact_normal_length_m(snapshot.tool), lines_);

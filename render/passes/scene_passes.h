@@ -40,6 +40,9 @@ class ScenePasses {
   // drawn.
   Status update_tool(const ToolSnapshot& tool) { return passes_.tool.update(tool); }
 
+  // Makes the programs that the looks of the bodies need. Call before draw().
+  Status prepare(const Snapshot& snapshot, const ViewSettings& settings);
+
   // Draws the shadow maps; does nothing if shadows are off. Call before draw().
   void draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                     const BodyMeshes& bodies);

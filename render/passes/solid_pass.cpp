@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/passes/studio_light.h"
 #include "render/passes/surface_passes.h"
 
 namespace spoonbill {
@@ -148,7 +149,7 @@ std::vector<SolidVertex> unit_pane() {
 }  // namespace
 
 Result<SolidPass> SolidPass::make(const GlFunctions& gl) {
-  const std::string light = std::string(key_light_glsl) + studio_light_glsl;
+  const std::string light = std::string("const bool reflects = true;\n") + key_light_glsl + studio_light_glsl;
   auto solid = Program::make(gl, "solid", solid_vertex_source, light + solid_source);
   if (!solid) return solid.error();
   auto glass = Program::make(gl, "glass", solid_vertex_source, light + glass_source);
@@ -202,6 +203,7 @@ void SolidPass::use_program(const Program& program, const FrameView& view, const
                             const Eigen::Vector4f& colour) const {
   program.use();
   set_frame_uniforms(program, view);
+  set_studio_uniforms(program, view);
   Eigen::Matrix4f normal_to_world = Eigen::Matrix4f::Identity();
   normal_to_world.topLeftCorner<3, 3>() = model.topLeftCorner<3, 3>().inverse().transpose();
   program.set("model", model);

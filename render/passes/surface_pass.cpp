@@ -1,6 +1,8 @@
 #include <string>
 #include <utility>
 
+#include "render/passes/material_patterns.h"
+#include "render/passes/studio_light.h"
 #include "render/passes/surface_passes.h"
 
 namespace spoonbill {
@@ -21,9 +23,15 @@ layout(location = 2) in float z;
 layout(location = 3) in float nx;
 layout(location = 4) in float ny;
 layout(location = 5) in float nz;
+layout(location = 6) in float visibility;
+layout(location = 7) in float tint;
 out vec3 position;
 out vec3 normal;
+out float visible;
+out float fixed_part;
 void main() {
+  visible = visibility;
+  fixed_part = tint;
   position = vec3(x, y, z);
   normal = vec3(nx, ny, nz);
   gl_Position = world_to_clip * vec4(position, 1.0);
@@ -34,7 +42,7 @@ void main() {
 }
 )";
 
-// Fragment shader of a body. The constant `opaque` must be prepended to the source. Five bilinear comparisons
+// Fragment shader of a body. The constant `clear` must be prepended to the source. Five bilinear comparisons
 // blur the edge of the shadow over about a millimetre; the offset along the normal prevents self-shadowing.
 constexpr const char* body_fragment_source = R"(
 uniform sampler2DShadow key_map;
@@ -43,12 +51,16 @@ uniform float texel;
 uniform float texel_m;
 uniform int shadowed;
 uniform int two_sided;
+uniform int occluded;
+uniform vec4 fixed_tint;
 uniform vec3 base_colour;
 uniform float roughness;
 uniform float metalness;
 uniform float translucency;
 in vec3 position;
 in vec3 normal;
+in float visible;
+in float fixed_part;
 out vec4 result;
 
 float key_past_body(vec3 n) {
@@ -64,47 +76,59 @@ float key_past_body(vec3 n) {
 void main() {
   vec3 n = normalize(normal);
   if (two_sided != 0 && !gl_FrontFacing) n = -n;
+  Skin skin = patterned(Skin(base_colour, n, occluded != 0 ? visible : 1.0), position);
   float key = 1.0;
-  float sky = 1.0;
+  float sky = skin.visible;
   if (shadowed != 0) {
     key = key_past_sphere(position);
-    sky = sky_past_sphere(position, n);
+    sky *= sky_past_sphere(position, n);
     if (dot(n, toward_key) > 0.0) key *= mix(key_past_body(n), 1.0, 0.6 * translucency);
   }
-  Look look = Look(base_colour, roughness, metalness, translucency);
-  Lit lit = studio_light(look, position, n, key, sky);
+  float tinted = fixed_tint.a * fixed_part;
+  Look look = Look(mix(skin.base, fixed_tint.rgb, tinted), roughness, metalness * (1.0 - tinted), translucency);
+  Lit lit = studio_light(look, position, skin.normal, key, sky);
   float grazing = 1.0 - clamp(abs(dot(n, normalize(eye - position))), 0.0, 1.0);
-  float opacity = mix(1.0, 0.26 + 0.56 * grazing * grazing, translucency);
-  result = opaque ? opaque_colour(lit) : clear_colour(lit, opacity);
+  float opacity = mix(1.0, 0.16 + 0.7 * grazing * grazing, translucency);
+  result = clear ? clear_colour(lit, opacity) : opaque_colour(lit);
 }
 )";
 
-std::string body_fragment_shader(bool opaque) {
-  return std::string(opaque ? "const bool opaque = true;\n" : "const bool opaque = false;\n") +
-         key_light_glsl + sphere_shadow_glsl + studio_light_glsl + body_fragment_source;
+std::string body_fragment_shader(const SurfaceVariant& variant) {
+  const auto constant = [](const char* name, bool value) {
+    return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n");
+  };
+  return constant("clear", variant.is_clear) + constant("reflects", variant.reflects) + key_light_glsl +
+         sphere_shadow_glsl + studio_light_glsl + pattern_glsl(variant.pattern) + body_fragment_source;
 }
 
 }  // namespace
 
-Result<SurfacePass> SurfacePass::make(const GlFunctions& gl) {
-  auto opaque = Program::make(gl, "opaque surface", body_vertex_source, body_fragment_shader(true));
-  if (!opaque) return opaque.error();
-  auto translucent =
-      Program::make(gl, "translucent surface", body_vertex_source, body_fragment_shader(false));
-  if (!translucent) return translucent.error();
-  return SurfacePass(gl, std::move(opaque).value(), std::move(translucent).value());
+Status SurfacePass::prepare(const SurfaceVariant& variant) {
+  if (programs_.contains(variant)) return {};
+  auto program = Program::make(*gl_, "surface", body_vertex_source, body_fragment_shader(variant));
+  if (!program) return program.error();
+  programs_.emplace(variant, std::move(program).value());
+  return {};
 }
 
-void SurfacePass::set_uniforms(const Program& program, const FrameView& view, const SurfaceLook& look,
+void SurfacePass::set_uniforms(const Program& program, const FrameView& view, const SurfaceDrawing& drawing,
                                const ToolSphere& tool, const ShadowPass* shadow) const {
+  const SurfaceLook& look = drawing.look;
   program.use();
   set_frame_uniforms(program, view);
+  set_studio_uniforms(program, view);
   set_tool_uniforms(program, tool);
+  program.set("world_to_pattern", drawing.world_to_pattern);
+  constexpr Colour fixed = palette::fixed_part;
+  const float opacity = drawing.shows_fixed ? static_cast<float>(fixed.a) / 255.0f : 0.0f;
+  program.set("fixed_tint", Eigen::Vector4f(srgb8_to_linear(fixed.r), srgb8_to_linear(fixed.g),
+                                            srgb8_to_linear(fixed.b), opacity));
+  program.set("occluded", drawing.is_occluded ? 1 : 0);
   program.set("base_colour", look.base_colour);
   program.set("roughness", look.roughness);
   program.set("metalness", look.metalness);
   program.set("translucency", look.translucency);
-  program.set("lift", look.translucency > 0.0f ? translucent_lift_m : 0.0f);
+  program.set("lift", look.is_clear() ? translucent_lift_m : 0.0f);
   program.set("key_map", 0);
   program.set("shadowed", shadow != nullptr ? 1 : 0);
   if (shadow == nullptr) return;
@@ -116,12 +140,11 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   gl_->BindTexture(GL_TEXTURE_2D, shadow->key_map());
 }
 
-void SurfacePass::draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
+void SurfacePass::draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceDrawing& drawing,
                        const ToolSphere& tool, const ShadowPass* shadow) const {
-  const bool opaque = look.translucency <= 0.0f;
-  const Program& program = opaque ? opaque_ : translucent_;
-  set_uniforms(program, view, look, tool, shadow);
-  if (!opaque) {
+  const Program& program = programs_.at(drawing.variant());
+  set_uniforms(program, view, drawing, tool, shadow);
+  if (drawing.look.is_clear()) {
     program.set("two_sided", 1);
     for (const Cull cull : {Cull::front, Cull::back}) {
       set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, cull});

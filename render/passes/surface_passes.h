@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <compare>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -17,25 +19,46 @@
 
 namespace spoonbill {
 
+// The features of a program that draws a body. A software renderer computes both sides of every branch, so
+// each variant has a program of its own.
+struct SurfaceVariant {
+  bool is_clear = false;
+  bool reflects = true;
+  SurfacePattern pattern = SurfacePattern::none;
+
+  friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
+};
+
+// How one surface is drawn.
+struct SurfaceDrawing {
+  SurfaceLook look;
+  Eigen::Matrix4f world_to_pattern;  // see find_pattern_frame()
+  bool is_occluded = true;           // whether light is dimmed by the visibility of the vertices
+  bool reflects = true;
+  bool shows_fixed = false;  // tints the fixed part
+
+  SurfaceVariant variant() const { return {look.is_clear(), reflects, look.pattern}; }
+};
+
 // Draws the surface of a body, lit by the studio lights.
 class SurfacePass {
  public:
-  static Result<SurfacePass> make(const GlFunctions& gl);
+  explicit SurfacePass(const GlFunctions& gl) : gl_(&gl) {}
 
-  // Draws a surface. An opaque look writes depth. A translucent look is blended, back faces first, and must
-  // be drawn after everything opaque. `shadow` is null if shadows are off.
-  void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
+  // Makes the program of a variant if it does not exist. Call before draw().
+  Status prepare(const SurfaceVariant& variant);
+
+  // Draws a surface. An opaque look writes depth. A clear look is blended, back faces first, and must be
+  // drawn after everything opaque. `shadow` is null if shadows are off.
+  void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceDrawing& drawing,
             const ToolSphere& tool, const ShadowPass* shadow) const;
 
  private:
-  SurfacePass(const GlFunctions& gl, Program opaque, Program translucent)
-      : gl_(&gl), opaque_(std::move(opaque)), translucent_(std::move(translucent)) {}
-  void set_uniforms(const Program& program, const FrameView& view, const SurfaceLook& look,
+  void set_uniforms(const Program& program, const FrameView& view, const SurfaceDrawing& drawing,
                     const ToolSphere& tool, const ShadowPass* shadow) const;
 
   const GlFunctions* gl_;
-  // Two programs are used, because a software renderer computes both sides of every branch.
-  Program opaque_, translucent_;
+  std::map<SurfaceVariant, Program> programs_;
 };
 
 // Draws simple solids (the tool, arrows) and flat translucent panes (fixing planes).

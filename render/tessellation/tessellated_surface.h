@@ -95,6 +95,10 @@ class TessellatedSurface {
 
   const SamplingLevel& level() const { return level_; }
 
+  // The rows and columns of the grid whose samples come first in samples(); not for a mesh.
+  std::size_t rows() const { return static_cast<std::size_t>(grid_->rows()); }
+  std::size_t columns() const { return static_cast<std::size_t>(grid_->columns()); }
+
   // Positions in metres and unit normals of the vertices. Normals point outward on a closed surface and along
   // du x dv on an open surface.
   const GridSamples<float>& samples() const { return samples_; }

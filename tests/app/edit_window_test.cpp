@@ -17,6 +17,8 @@
 #include "render/image.h"
 #include "tests/app/process.h"
 #include "tests/app/workplace.h"
+#include "tests/render/compare.h"
+#include "tests/render/read_png.h"
 #include "tests/render/virtual_display.h"
 
 namespace spoonbill {
@@ -53,6 +55,15 @@ class EditWindow : public testing::Test {
   }
 
   std::filesystem::path log_file() const { return place_.path("frames.log"); }
+
+  // Presses a key until this field of the frames is false.
+  bool press_while(const std::string& key, const std::string& field) {
+    constexpr int most_strokes = 10;
+    for (int stroke = 0; stroke < most_strokes && shown()[field].get<bool>(); ++stroke) {
+      if (!hands("key " + key) || !wait_frames(3)) return false;
+    }
+    return wait_shown([&](const Json& frame) { return !frame[field].get<bool>(); });
+  }
 
   // Returns the last frame shown, with the fields of ShownFrame; empty before the first frame.
   Json shown() const {
@@ -201,19 +212,22 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   // The dent is 0.7 to 1.2 mm deep; it depends on how fast the mouse moves while the machine is busy.
   EXPECT_GT(largest_difference(bent, original), 0.5e-3);
 
-  ASSERT_TRUE(hands("key ctrl+z"));
-  ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));
+  // On a loaded machine the mouse moves in jerks, and the tool may touch more than once.
+  ASSERT_TRUE(press_while("ctrl+z", "can_undo"));
   const Document undone = saved("handle.json", time_of("handle.json"));
   EXPECT_EQ(largest_difference(undone, original), 0.0);  // equal bit for bit
 
-  ASSERT_TRUE(hands("key ctrl+y"));
-  ASSERT_TRUE(wait_shown([](const Json& frame) { return !frame["can_redo"].get<bool>(); }));
+  ASSERT_TRUE(press_while("ctrl+y", "can_redo"));
   const Document redone = saved("handle.json", time_of("handle.json"));
   // The body moves a little between the two saves.
   EXPECT_LT(largest_difference(redone, bent), 0.25 * largest_difference(bent, original));
 
   ASSERT_TRUE(hands("key F12"));
   EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("handle-0001.png")); }));
+  ASSERT_TRUE(hands("key shift+F12"));
+  EXPECT_TRUE(wait_for([&] { return std::filesystem::exists(place_.path("handle-0002.png")); }));
+  EXPECT_FALSE(has_panel(read_png(place_.path("handle-0001.png")).value()));
+  EXPECT_TRUE(has_panel(read_png(place_.path("handle-0002.png")).value()));
   ASSERT_TRUE(hands("key ctrl+q"));
   EXPECT_EQ(wait_for_end(), exit_done);
   const Outcome replayed = run({"replay", place_.text("session.jsonl"), "--no-frames", "--json"});

@@ -8,18 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "render/tessellation/tessellated_surface.h"
+
 namespace spoonbill {
 namespace {
 
 const std::string bundled_handle = std::string(SPOONBILL_ASSETS) + "/models/spoon-handle.json";
 
-// Returns the part of the picture's half width or height that the control points reach at most.
+// Returns the part of the picture's half width or height that the surface reaches at most.
 double reach(const ShownModel& model, const ViewSettings& view, const PictureSettings& picture) {
   const Viewport viewport = make_viewport(picture.width_px, picture.height_px, {});
   double most = 0.0;
   const SurfaceSnapshot& surface = model.snapshot.bodies[0].surface;
-  for (std::size_t i = 0; i < surface.x.size(); ++i) {
-    const auto pixel = project(view.camera, viewport, {surface.x[i], surface.y[i], surface.z[i]});
+  TessellatedSurface drawn;
+  EXPECT_TRUE(drawn.update(surface, uniform_sampling_level(surface, 8)));
+  const GridSamples<float>& at = drawn.samples();
+  for (std::size_t i = 0; i < at.x.size(); ++i) {
+    const auto pixel = project(view.camera, viewport, {at.x[i], at.y[i], at.z[i]});
     if (!pixel) return 10.0;
     most = std::max({most, std::abs(pixel->x() / (0.5 * picture.width_px) - 1.0),
                      std::abs(pixel->y() / (0.5 * picture.height_px) - 1.0)});

@@ -26,7 +26,8 @@ class Crew : public ::testing::Test {
     PaintingJob job;
     job.frame = frame;
     write_snapshot(session_, job.snapshot);
-    job.view = frame_view(session_.view, framed_box(job.snapshot), width_px, height_px);
+    job.view =
+        frame_view(session_.view, Framing{framed_box(job.snapshot), {}, 0.0}, {width_px, height_px, true});
     SessionFacts facts;
     write_facts(session_, facts);
     job.panel = make_panel_model(facts, job.snapshot, job.view);

@@ -8,6 +8,7 @@
 #include "app/program.h"
 #include "app/session/lockstep.h"
 #include "tests/app/workplace.h"
+#include "tests/render/compare.h"
 #include "tests/render/read_png.h"
 
 namespace spoonbill {
@@ -77,6 +78,19 @@ TEST(Replay, TakesAScreenshotBetweenTheFramesItDraws) {
     EXPECT_EQ(each->rgba, twentieth->rgba) << name;
   }
   EXPECT_EQ(names_in(place.path("20")).count("frame-0003.png"), 0u);
+}
+
+TEST(Replay, ShowsThePanelOnlyIfAsked) {
+  const Workplace place;
+  const std::string recording = place.record("bend.jsonl").string();
+  const auto replayed = [&](std::vector<std::string> more) {
+    std::vector<std::string> command = {"replay", recording, "--out", place.text("out"), "--every", "99"};
+    command.insert(command.end(), more.begin(), more.end());
+    EXPECT_EQ(run(command).code, exit_done);
+    return read_png(place.path("out") / "frame-0000.png").value();
+  };
+  EXPECT_FALSE(has_panel(replayed({})));
+  EXPECT_TRUE(has_panel(replayed({"--panel"})));
 }
 
 TEST(Replay, NeverFollowsALinkInItsFolder) {

@@ -12,14 +12,19 @@
 #include <utility>
 #include <vector>
 
+#include "app/files/shown_model.h"
 #include "app/frames/frame_painter.h"
+#include "app/frames/model_picture.h"
+#include "app/panel/interface_context.h"
 #include "app/panel/panel.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
 #include "engine/exchange/document.h"
 #include "engine/merging/merge.h"
 #include "haptic/virtual_device.h"
+#include "render/contact_sheet.h"
 #include "render/image.h"
+#include "render/tessellation/tessellated_surface.h"
 #include "tests/pictures/approved.h"
 #include "tests/render/compare.h"
 
@@ -47,7 +52,7 @@ class MomentPictures : public ::testing::Test {
     Snapshot snapshot;
     SessionFacts facts;
     ViewChoice view;
-    Box framed;
+    Framing framing;
     std::shared_ptr<FramePainter> painter;  // draws only this session
   };
 
@@ -71,7 +76,7 @@ class MomentPictures : public ::testing::Test {
       session_->reading = read->readings.front();
       Snapshot snapshot;
       write_snapshot(*session_, snapshot);
-      framed_ = framed_box(snapshot);
+      framing_ = find_framing(session_->simulation.scene(), snapshot);
       readings_ = std::move(read->readings);
       device_ = std::make_unique<PlaybackDevice>(read->header.device, readings_);
       lockstep_ = std::make_unique<Lockstep>(
@@ -90,7 +95,8 @@ class MomentPictures : public ::testing::Test {
       write_snapshot(*session_, stage.snapshot);
       write_facts(*session_, stage.facts);
       stage.view = session_->view;
-      stage.framed = framed_;
+      stage.framing = framing_;
+      stage.framing.lowest_y_m = std::min(framing_.lowest_y_m, drawn_bounds(stage.snapshot).low.y());
       stage.painter = painter_;
       return stage;
     }
@@ -105,7 +111,7 @@ class MomentPictures : public ::testing::Test {
     std::unique_ptr<Session> session_;
     std::unique_ptr<PlaybackDevice> device_;
     std::unique_ptr<Lockstep> lockstep_;
-    Box framed_;
+    Framing framing_;
     std::shared_ptr<FramePainter> painter_ = make_painter();
   };
 
@@ -137,13 +143,13 @@ class MomentPictures : public ::testing::Test {
     write_snapshot(session.value(), stage.snapshot);
     write_facts(session.value(), stage.facts);
     stage.view = session->view;
-    stage.framed = framed_box(stage.snapshot);
+    stage.framing = find_framing(session->simulation.scene(), stage.snapshot);
     stage.painter = make_painter();
     return stage;
   }
 
-  static Image paint(const Stage& stage, const Edit& edit) {
-    ViewSettings view = frame_view(stage.view, stage.framed, width_px, height_px);
+  static Image paint(const Stage& stage, const Edit& edit, bool has_panel = false) {
+    ViewSettings view = frame_view(stage.view, stage.framing, {width_px, height_px, has_panel});
     PanelModel panel = make_panel_model(stage.facts, stage.snapshot, view);
     if (edit) edit(view, panel);
     Image image;
@@ -151,18 +157,20 @@ class MomentPictures : public ::testing::Test {
     return image;
   }
 
-  static Image picture(const Moment& moment, const Edit& edit = {}) { return paint(stage_of(moment), edit); }
+  static Image picture(const Moment& moment, const Edit& edit = {}, bool has_panel = false) {
+    return paint(stage_of(moment), edit, has_panel);
+  }
 
   static void compare_moment(const Moment& moment) { compare_with_approved(moment.name, picture(moment)); }
 
   // Returns the difference that each edit makes in the picture.
   static std::vector<double> changes(const Moment& moment, const std::vector<Edit>& edits) {
     const Stage& stage = stage_of(moment);
-    const Image unchanged = paint(stage, {});
+    const Image unchanged = paint(stage, {}, true);
     std::vector<double> result;
     result.reserve(edits.size());
     for (const Edit& edit : edits) {
-      result.push_back(worst_block_difference(unchanged, paint(stage, edit)).value().worst);
+      result.push_back(worst_block_difference(unchanged, paint(stage, edit, true)).value().worst);
     }
     return result;
   }
@@ -188,13 +196,14 @@ TEST_F(BendPictures, Settled) {
   compare_moment(settled);
 }
 
-TEST_F(BendPictures, SettledWithLatticeAndControlNet) {
-  compare_with_approved("bend-lattice", picture(settled, [](ViewSettings& view, PanelModel& panel) {
-                          view.overlays.lattice = view.overlays.control_net = true;
-                          view.see_through_body = true;
-                          panel.overlays = view.overlays;
-                          panel.see_through_body = true;
-                        }));
+TEST_F(BendPictures, SettledWithPanelLatticeAndControlNet) {
+  const auto edit = [](ViewSettings& view, PanelModel& panel) {
+    view.overlays.lattice = view.overlays.control_net = true;
+    view.see_through_body = true;
+    panel.overlays = view.overlays;
+    panel.see_through_body = true;
+  };
+  compare_with_approved("bend-lattice", picture(settled, edit, true));
 }
 
 TEST_F(BendPictures, WhatMustShowShows) {
@@ -313,6 +322,40 @@ TEST_F(MergePictures, HandleAndBowl) {
 TEST_F(MergePictures, Spoon) {
   const Stage stage = stage_of_document(spoon());
   compare_with_approved("spoon-merged", paint(stage, {}));
+}
+
+// Pictures of models that nobody touches.
+Image model_picture(const std::string& model, const std::string& material, int width, int height) {
+  const auto shown = read_shown_model(model_folder / (model + ".json"), Progress());
+  EXPECT_TRUE(shown) << shown.error().message;
+  ShownModel painted = shown.value();
+  if (!material.empty()) show_material(material, painted);
+  PictureSettings settings;
+  settings.width_px = width;
+  settings.height_px = height;
+  auto painter = FramePainter::make(width, height);
+  EXPECT_TRUE(painter) << painter.error().message;
+  Image image;
+  EXPECT_TRUE(painter->paint(painted.snapshot, make_picture_view(painted, settings), {}, image));
+  return image;
+}
+
+TEST(ModelPictures, BentSpoon) {
+  compare_with_approved("bent-spoon", model_picture("bent-spoon", "", width_px, height_px));
+}
+
+TEST(ModelPictures, OneSpoonInTenMaterials) {
+  ContactSheetLayout layout;
+  layout.columns = 2;
+  layout.cell_width_px = 640;
+  layout.caption_px = 22;
+  layout.caption_font_path = font_file;
+  ContactSheet sheet(layout);
+  for (const char* material : {"modelling-clay", "wax", "steel-304", "aluminium-6061", "abs", "polypropylene",
+                               "beech", "silicone-00-30", "gelatin-10-1", "foam"}) {
+    sheet.add(model_picture("bent-spoon", material, 640, 360), material);
+  }
+  compare_with_approved("materials", sheet.compose().value());
 }
 
 }  // namespace

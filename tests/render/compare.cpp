@@ -68,4 +68,16 @@ Result<Image> difference_picture(const Image& expected, const Image& actual) {
   return picture;
 }
 
+bool has_panel(const Image& picture) {
+  const int first = picture.height / 8, end = picture.height / 3;
+  int different = 0;
+  for (int y = first; y < end; ++y) {
+    const std::uint8_t *left = picture.pixel(2, y), *right = picture.pixel(picture.width - 3, y);
+    int largest = 0;
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(left[c] - right[c]));
+    if (largest > 2) ++different;
+  }
+  return 2 * different > end - first;
+}
+
 }  // namespace spoonbill

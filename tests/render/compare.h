@@ -24,4 +24,8 @@ Result<BlockDifference> worst_block_difference(const Image& expected, const Imag
 // worst block is framed. Fails if the sizes differ.
 Result<Image> difference_picture(const Image& expected, const Image& actual);
 
+// Returns whether a picture shows a panel at its left edge: whether most of the upper part of this edge
+// differs from the right one, which shows the same backdrop.
+bool has_panel(const Image& picture);
+
 }  // namespace spoonbill

@@ -43,10 +43,13 @@ TEST(Labels, TheLegendSaysWhatIsOnAndThere) {
   Snapshot snapshot = sample_scene();
   ViewSettings settings = framed(snapshot);
   OverlayLabels labels = overlay_labels(snapshot, settings, 1280, 720);
-  EXPECT_TRUE(has_line(labels.legend, "fixed nodes 640"));
+  EXPECT_TRUE(has_line(labels.legend, "fixed part"));
   EXPECT_TRUE(has_line(labels.legend, "touched nodes"));
   EXPECT_TRUE(has_line(labels.legend, "sphere tool, push"));
   EXPECT_FALSE(has_line(labels.legend, "control net"));
+
+  settings.overlays.lattice = true;
+  EXPECT_TRUE(has_line(overlay_labels(snapshot, settings, 1280, 720).legend, "fixed nodes 640"));
 
   settings.overlays.control_net = true;
   settings.overlays.fixed_nodes = false;
@@ -182,7 +185,10 @@ TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
 TEST(SurfaceLook, MaterialsLookLikeThemselves) {
   EXPECT_GT(find_material_look("modelling-clay").roughness, 0.6f);
   EXPECT_EQ(find_material_look("Steel 304").metalness, 1.0f);
-  EXPECT_GT(find_material_look("jelly").translucency, 0.3f);
+  EXPECT_TRUE(find_material_look("jelly").is_clear());
+  EXPECT_TRUE(find_material_look("silicone-00-30").is_clear());
+  EXPECT_FALSE(find_material_look("wax").is_clear());
+  EXPECT_EQ(find_material_look("beech").pattern, SurfacePattern::grain);
   EXPECT_EQ(find_material_look("unobtainium").translucency, 0.0f);
 }
 

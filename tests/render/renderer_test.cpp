@@ -113,6 +113,63 @@ TEST_F(Rendering, ALightMovedByFiveDegreesIsNoticed) {
   EXPECT_GT(moved, tolerance);
 }
 
+TEST_F(Rendering, StudiosDiffer) {
+  ASSERT_EQ(studios().size(), 3u);
+  for (const Studio& studio : studios().subspan(1)) {
+    EXPECT_GT(change([&](ViewSettings& s) { s.studio = studio; }), tolerance) << studio.name;
+  }
+  EXPECT_GT(change([](ViewSettings& s) { s.studio_turn_rad = 5.0 * M_PI / 180.0; }), tolerance);
+}
+
+TEST_F(Rendering, MissingReflectionsAreNoticed) {
+  for (const char* material : {"steel-304", "abs"}) {
+    snapshot_.bodies[0].material.name = material;
+    EXPECT_GT(change([](ViewSettings& s) { s.reflections = false; }), tolerance) << material;
+  }
+}
+
+TEST_F(Rendering, MissingOcclusionIsNoticed) {
+  snapshot_.bodies.push_back(snapshot_.bodies[0]);
+  for (float& y : snapshot_.bodies[1].surface.y) y += 0.012f;
+  EXPECT_GT(change([](ViewSettings& s) { s.occlusion = false; }), tolerance);
+}
+
+// No pixel of a plain skin differs from the next one by more than one step of eight bits, where the skin
+// changes by less than that per pixel.
+TEST_F(Rendering, SmoothGradientsHaveNoSteps) {
+  settings_.overlays = {};
+  settings_.overlays.tool = settings_.overlays.fixed_nodes = settings_.overlays.ground_grid =
+      settings_.overlays.scale_bar = settings_.overlays.fixing_planes = settings_.overlays.force = false;
+  settings_.shadow = false;
+  settings_.camera.distance_m *= 0.3;
+  settings_.is_transparent = true;
+  snapshot_.bodies[0].material.name = "polypropylene";
+  const Image image = picture();
+  constexpr int run = 8;
+  int smooth = 0;
+  for (int y = 0; y < sample_height_px; ++y) {
+    for (int x = 0; x + run < sample_width_px; x += run) {
+      for (int c = 0; c < 3; ++c) {
+        const auto at = [&](int k) { return static_cast<int>(image.pixel(x + k, y)[c]); };
+        int largest = 0;
+        bool rises = true, falls = true, inside = true;
+        for (int k = 0; k < run; ++k) {
+          inside &= image.pixel(x + k, y)[3] == 255 && image.pixel(x + k + 1, y)[3] == 255;
+          const int step = at(k + 1) - at(k);
+          largest = std::max(largest, std::abs(step));
+          rises &= step >= 0;
+          falls &= step <= 0;
+        }
+        const int change = std::abs(at(run) - at(0));
+        if (!inside || !(rises || falls) || change == 0 || change > run / 2) continue;
+        ++smooth;
+        EXPECT_LE(largest, 1) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_GT(smooth, 1000);
+}
+
 TEST_F(Rendering, EveryOverlayShows) {
   snapshot_.bodies[0].lattice.touched[0] = 1;
   snapshot_.symmetric = true;

@@ -1,0 +1,236 @@
+#include "render/tessellation/ambient_occlusion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "engine/base/assert.h"
+
+namespace spoonbill {
+namespace {
+
+// Pairs of a vertex and a disc in one update, which bounds its time, and the discs that result from it.
+constexpr std::size_t most_pairs = 4'000'000;
+constexpr std::size_t fewest_discs = 48, most_discs = 512;
+
+Eigen::Vector3f point(const GridSamples<float>& samples, std::uint32_t at) {
+  return {samples.x[at], samples.y[at], samples.z[at]};
+}
+
+}  // namespace
+
+void AmbientOcclusion::Discs::clear() {
+  for (auto* values : {&x, &y, &z, &nx, &ny, &nz, &area_m2, &two_sided}) values->clear();
+}
+
+void AmbientOcclusion::Discs::add(const Eigen::Vector3f& centre_m, const Eigen::Vector3f& area_normal_m2,
+                                  bool is_two_sided) {
+  const float area = area_normal_m2.norm();
+  if (!(area > 0.0f)) return;
+  const Eigen::Vector3f normal = area_normal_m2 / area;
+  x.push_back(centre_m.x());
+  y.push_back(centre_m.y());
+  z.push_back(centre_m.z());
+  nx.push_back(normal.x());
+  ny.push_back(normal.y());
+  nz.push_back(normal.z());
+  area_m2.push_back(area);
+  two_sided.push_back(is_two_sided ? 1.0f : 0.0f);
+}
+
+void AmbientOcclusion::update(const std::vector<TessellatedSurface>& surfaces) {
+  if (!have_moved(surfaces)) return;
+  std::size_t vertices = 0;
+  for (const TessellatedSurface& surface : surfaces) vertices += surface.vertex_count();
+  if (vertices == 0) return;
+  const std::size_t wanted = std::clamp(most_pairs / vertices, fewest_discs, most_discs) / surfaces.size();
+  discs_.clear();
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    Groups& groups = bodies_[b].groups;
+    if (!groups.fit(surfaces[b])) group(surfaces[b], std::max<std::size_t>(wanted, 16), groups);
+    append_discs(surfaces[b], groups);
+  }
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    const GridSamples<float>& samples = surfaces[b].samples();
+    std::vector<float>& visibility = bodies_[b].visibility;
+    visibility.resize(surfaces[b].vertex_count());
+    for (std::size_t v = 0; v < visibility.size(); ++v) {
+      const Eigen::Vector3f normal(samples.nx[v], samples.ny[v], samples.nz[v]);
+      const float seen = 1.0f - hidden(point(samples, static_cast<std::uint32_t>(v)), normal);
+      visibility[v] = std::isfinite(seen) ? std::clamp(seen, 0.0f, 1.0f) : 1.0f;
+    }
+  }
+}
+
+bool AmbientOcclusion::have_moved(const std::vector<TessellatedSurface>& surfaces) {
+  bool moved = bodies_.size() != surfaces.size();
+  bodies_.resize(surfaces.size());
+  for (std::size_t b = 0; b < surfaces.size(); ++b) {
+    const GridSamples<float>& samples = surfaces[b].samples();
+    const std::size_t count = samples.x.size();
+    std::vector<float>& last = bodies_[b].positions_m;
+    moved |= last.size() != 3 * count || !bodies_[b].groups.fit(surfaces[b]);
+    last.resize(3 * count);
+    std::size_t start = 0;
+    for (const auto* plane : {&samples.x, &samples.y, &samples.z}) {
+      const auto into = last.begin() + static_cast<std::ptrdiff_t>(start);
+      if (!moved) moved = !std::equal(plane->begin(), plane->end(), into);
+      std::copy(plane->begin(), plane->end(), into);
+      start += count;
+    }
+  }
+  return moved;
+}
+
+namespace {
+
+// The group of a triangle: cells of a grid, and the direction that it faces.
+using GroupKey = std::array<int, 4>;
+
+// Groups the triangles of a surface by blocks of its samples, whatever its shape is.
+class BlockGrouping {
+ public:
+  BlockGrouping(const TessellatedSurface& surface, std::size_t wanted)
+      : surface_(&surface), columns_(surface.columns()), rows_(surface.rows()) {
+    const double ratio = static_cast<double>(rows_) / static_cast<double>(columns_);
+    const double down = std::sqrt(static_cast<double>(wanted) * ratio);
+    block_rows_ = block_size(rows_, down);
+    block_columns_ = block_size(columns_, static_cast<double>(wanted) / down);
+  }
+
+  // Vertices on trim loops come after the samples, so that the smallest index of a triangle is a sample's,
+  // unless all of its vertices are on a loop.
+  std::optional<GroupKey> operator()(std::size_t triangle) const {
+    const auto* corners = &surface_->indices()[triangle];
+    const std::size_t first = std::min(*std::min_element(corners, corners + 3), last_sample());
+    return GroupKey{static_cast<int>(first / columns_ / block_rows_),
+                    static_cast<int>(first % columns_ / block_columns_), 0, 0};
+  }
+
+ private:
+  static std::size_t block_size(std::size_t samples, double blocks) {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(samples) / blocks));
+  }
+  std::uint32_t last_sample() const { return static_cast<std::uint32_t>(rows_ * columns_ - 1); }
+
+  const TessellatedSurface* surface_;
+  std::size_t columns_, rows_, block_rows_ = 1, block_columns_ = 1;
+};
+
+// Groups the triangles of a mesh by the cells of a regular grid that hold their centres, and by the direction
+// that they face, so that both sides of a thin wall become discs of their own.
+class CellGrouping {
+ public:
+  CellGrouping(const TessellatedSurface& surface, std::size_t wanted) : surface_(&surface) {
+    float area_m2 = 0.0f;
+    for (std::size_t i = 0; i + 2 < surface.indices().size(); i += 3) {
+      const float size = 0.5f * double_area(i).norm();
+      if (std::isfinite(size)) area_m2 += size;
+    }
+    cell_m_ = std::sqrt(std::max(area_m2, 1e-12f) / static_cast<float>(wanted));
+  }
+
+  // Returns nothing for a triangle that is not finite.
+  std::optional<GroupKey> operator()(std::size_t triangle) const {
+    const Eigen::Vector3f normal = double_area(triangle);
+    const Eigen::Vector3f cell =
+        ((corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2)) / (3.0f * cell_m_))
+            .array()
+            .floor();
+    constexpr float most_cells = 1e6f;
+    if (!normal.allFinite() || !(cell.cwiseAbs().maxCoeff() < most_cells)) return std::nullopt;
+    int axis = 0;
+    normal.cwiseAbs().maxCoeff(&axis);
+    return GroupKey{static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z()),
+                    2 * axis + (normal[axis] > 0.0f ? 1 : 0)};
+  }
+
+ private:
+  Eigen::Vector3f corner(std::size_t triangle, std::size_t k) const {
+    return point(surface_->samples(), surface_->indices()[triangle + k]);
+  }
+  Eigen::Vector3f double_area(std::size_t triangle) const {
+    const Eigen::Vector3f a = corner(triangle, 0);
+    return (corner(triangle, 1) - a).cross(corner(triangle, 2) - a);
+  }
+
+  const TessellatedSurface* surface_;
+  float cell_m_ = 1.0f;
+};
+
+template <class Grouping>
+std::map<GroupKey, std::vector<std::uint32_t>> group_triangles(std::size_t index_count,
+                                                               const Grouping& grouping) {
+  std::map<GroupKey, std::vector<std::uint32_t>> groups;
+  for (std::size_t i = 0; i + 2 < index_count; i += 3) {
+    if (const auto key = grouping(i)) groups[*key].push_back(static_cast<std::uint32_t>(i));
+  }
+  return groups;
+}
+
+}  // namespace
+
+void AmbientOcclusion::group(const TessellatedSurface& surface, std::size_t wanted, Groups& groups) {
+  groups.topology_version = surface.topology_version();
+  groups.index_count = surface.indices().size();
+  groups.triangles.clear();
+  groups.ends.clear();
+  const auto found = surface.is_mesh() ? group_triangles(groups.index_count, CellGrouping(surface, wanted))
+                                       : group_triangles(groups.index_count, BlockGrouping(surface, wanted));
+  for (const auto& [key, triangles] : found) {
+    groups.triangles.insert(groups.triangles.end(), triangles.begin(), triangles.end());
+    groups.ends.push_back(static_cast<std::uint32_t>(groups.triangles.size()));
+  }
+}
+
+void AmbientOcclusion::append_discs(const TessellatedSurface& surface, const Groups& groups) {
+  const GridSamples<float>& samples = surface.samples();
+  const std::vector<std::uint32_t>& indices = surface.indices();
+  std::size_t t = 0;
+  for (const std::uint32_t end : groups.ends) {
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero(), area_normal = Eigen::Vector3f::Zero();
+    float weight = 0.0f;
+    for (; t < end; ++t) {
+      const std::uint32_t i = groups.triangles[t];
+      const Eigen::Vector3f a = point(samples, indices[i]), b = point(samples, indices[i + 1]),
+                            c = point(samples, indices[i + 2]);
+      const Eigen::Vector3f twice = (b - a).cross(c - a);
+      const float size = twice.norm();
+      centre += size * (a + b + c) / 3.0f;
+      area_normal += 0.5f * twice;
+      weight += size;
+    }
+    if (weight > 0.0f) discs_.add(centre / weight, area_normal, !surface.is_closed());
+  }
+}
+
+float AmbientOcclusion::hidden(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) const {
+  const float px = point_m.x(), py = point_m.y(), pz = point_m.z();
+  const float nx = normal.x(), ny = normal.y(), nz = normal.z();
+  constexpr auto pi = std::numbers::pi_v<float>;
+  constexpr int lanes = 16;
+  std::array<float, lanes> sums{};
+  const std::size_t count = discs_.count();
+  const auto add = [&](std::size_t d, float& sum) {
+    const float x = discs_.x[d] - px, y = discs_.y[d] - py, z = discs_.z[d] - pz;
+    const float square = x * x + y * y + z * z + 1e-12f;
+    const float above = std::max(nx * x + ny * y + nz * z, 0.0f);
+    const float facing = -(discs_.nx[d] * x + discs_.ny[d] * y + discs_.nz[d] * z);
+    const float seen = std::max(facing, -discs_.two_sided[d] * facing);
+    const float area = discs_.area_m2[d];
+    sum += area * above * std::max(seen, 0.0f) / (square * (pi * square + area));
+  };
+  std::size_t d = 0;
+  for (; d + lanes <= count; d += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) add(d + k, sums[k]);
+  }
+  for (; d < count; ++d) add(d, sums[0]);
+  float sum = 0.0f;
+  for (const float lane : sums) sum += lane;
+  return sum;
+}
+
+}  // namespace spoonbill

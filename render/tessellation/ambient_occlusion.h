@@ -1,0 +1,64 @@
+// Ambient occlusion: how much of its surroundings each vertex of the drawn bodies sees past the bodies.
+// Does not use GL.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/tessellation/tessellated_surface.h"
+
+namespace spoonbill {
+
+// The triangles of all bodies are gathered into discs; the light that each disc keeps from a vertex is its
+// form factor (point to disc, Bunnell 2005), and the sum of these is taken from 1. Overlapping discs are
+// counted twice, so that deep corners are darker than they should be. What a smooth body hides of itself is
+// exact in the limit of small discs: inside a part of a sphere, the part's area over that of the sphere. One
+// owner, one thread.
+class AmbientOcclusion {
+ public:
+  // Computes the visibility of all vertices. Does nothing if no vertex has moved since the last call.
+  void update(const std::vector<TessellatedSurface>& surfaces);
+
+  // Returns for each vertex of a surface how much of the hemisphere above it no body hides, weighted by the
+  // cosine: from 0 to 1.
+  const std::vector<float>& visibility(std::size_t surface) const { return bodies_[surface].visibility; }
+
+ private:
+  // Triangles of a body, in groups that become discs. They stay the same while the body deforms, so that
+  // nothing flickers. Those of a mesh depend on its first shape.
+  struct Groups {
+    std::uint64_t topology_version = 0;
+    std::size_t index_count = 0;
+    std::vector<std::uint32_t> triangles;  // ordered by group
+    std::vector<std::uint32_t> ends;       // end of each group in `triangles`
+
+    bool fit(const TessellatedSurface& surface) const {
+      return topology_version == surface.topology_version() && index_count == surface.indices().size();
+    }
+  };
+  struct Body {
+    Groups groups;
+    std::vector<float> positions_m;  // at the last update, x then y then z
+    std::vector<float> visibility;
+  };
+  // Discs as separate arrays; `x` to `z` are centres, `nx` to `nz` normals.
+  struct Discs {
+    std::vector<float> x, y, z, nx, ny, nz, area_m2;
+    std::vector<float> two_sided;  // 1 for a disc of an open surface, which also hides what is behind it
+
+    void clear();
+    void add(const Eigen::Vector3f& centre_m, const Eigen::Vector3f& area_normal_m2, bool is_two_sided);
+    std::size_t count() const { return x.size(); }
+  };
+
+  bool have_moved(const std::vector<TessellatedSurface>& surfaces);
+  static void group(const TessellatedSurface& surface, std::size_t wanted, Groups& groups);
+  void append_discs(const TessellatedSurface& surface, const Groups& groups);
+  float hidden(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) const;
+
+  std::vector<Body> bodies_;
+  Discs discs_;
+};
+
+}  // namespace spoonbill
