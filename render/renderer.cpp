@@ -72,7 +72,9 @@ class Renderer::Parts {
     if (Status target = fit_target(settings.samples); !target) return target;
     const FrameView view = make_frame_view(settings, target_->width_px(), target_->height_px());
     const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
-    if (Status bodies = bodies_.update(snapshot, detail, settings.keep_level, settings.occlusion); !bodies) {
+    if (Status bodies = bodies_.update(
+            snapshot, detail, {settings.keep_level, settings.occlusion, settings.overlays.fixed_nodes});
+        !bodies) {
       return bodies;
     }
     if (Status looks = scene_->prepare(snapshot, settings); !looks) return looks;

@@ -94,8 +94,9 @@ std::string FrameBudget::text() const {
     list += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + std::string(omitted[i]);
   }
   return "drawing without " + list +
-         (late_frames_ < late_limit / 2 ? " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz"
-                                        : "");
+         (quality_ != FrameQuality::coarse || late_frames_ == 0
+              ? " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz"
+              : "");
 }
 
 }  // namespace spoonbill

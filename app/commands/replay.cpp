@@ -142,16 +142,6 @@ struct ReplayPlan {
   std::vector<SheetFrame> sheet;  // frames of the contact sheet
 };
 
-// Returns the names of the commands after tick `after` and up to tick `until`, without those of the view.
-std::vector<std::string> find_commands(const Recording& recording, std::uint64_t after, std::uint64_t until) {
-  std::vector<std::string> names;
-  for (const TimedCommand& timed : recording.commands) {
-    const bool is_due = timed.tick <= until && (timed.tick > after || after == 0);
-    if (is_due && !is_view_command(timed.command)) names.push_back(timed.command.value("command", ""));
-  }
-  return names;
-}
-
 // Makes the plan from a replay of its own. Where this replay fails, the one with pictures fails too, and says
 // why.
 ReplayPlan plan_replay(const Replay& replay, const PictureRequest& request, const InterruptWatch& interrupt,
@@ -159,27 +149,28 @@ ReplayPlan plan_replay(const Replay& replay, const PictureRequest& request, cons
   const Recording& recording = replay.recording;
   auto session =
       Session::make(recording.header.document, "", recording.header.device, replay.options.instruction_set);
-  if (!session || recording.readings.empty()) return {lowest_y_m, {}};
+  if (!session) return {lowest_y_m, {}};
   session->keeps_documents = false;
   PlaybackDevice device(recording.header.device, recording.readings);
-  session->reading = recording.readings.front();
+  if (!recording.readings.empty()) session->reading = recording.readings.front();
   Lockstep lockstep(session.value(), make_lockstep_input(recording, device, ""), nullptr);
   Snapshot snapshot;
   FrameEvents events;
-  std::uint64_t last_tick = 0;
+  auto command = recording.commands.begin();
   ProgressBar progress(replay.console, "Planning", replay.options.progress);
-  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); ++frame) {
+  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
+       frame += request.every) {
     if (!lockstep.run_to(frame_tick(frame))) break;
     session->marks.clear();
     write_snapshot(session.value(), snapshot);
     // The lowest control point is not above its surface.
     if (framed_box(snapshot).low.y() < lowest_y_m)
       lowest_y_m = std::min(lowest_y_m, drawn_bounds(snapshot).low.y());
-    if (frame % request.every == 0) {
-      events.add(frame, snapshot.time_s(), snapshot.force_n.norm(),
-                 find_commands(recording, last_tick, lockstep.tick()));
-      last_tick = lockstep.tick();
+    std::vector<std::string> names;
+    for (; command != recording.commands.end() && command->tick <= lockstep.tick(); ++command) {
+      if (!is_view_command(command->command)) names.push_back(command->command.value("command", ""));
     }
+    events.add(frame, snapshot.time_s(), snapshot.force_n.norm(), names);
     progress.show(frame + 1, request.frame_count);
   }
   return {lowest_y_m, events.choose(sheet_frame_count)};
@@ -190,9 +181,12 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   Snapshot start;
   write_snapshot(replay.session, start);
   Framing framing = find_framing(replay.session.simulation.scene(), start);
-  const ReplayPlan plan = plan_replay(replay, request, interrupt, framing.lowest_y_m);
-  framing.lowest_y_m = plan.lowest_y_m;
-  pictures.choose_sheet(plan.sheet);
+  const bool has_ground = framing.ground_y_m || replay.session.view.ground_y_m;
+  if (request.folder || !has_ground) {
+    const ReplayPlan plan = plan_replay(replay, request, interrupt, framing.lowest_y_m);
+    framing.lowest_y_m = plan.lowest_y_m;
+    pictures.choose_sheet(plan.sheet);
+  }
   PaintingCrew crew(request.size.width_px, request.size.height_px);
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   std::vector<std::string> names;

@@ -24,6 +24,7 @@
 #include "haptic/recording_lines.h"
 #include "haptic/virtual_device.h"
 #include "render/gl/context.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
@@ -81,7 +82,7 @@ class TrialPictures {
     const Scene& scene = session.simulation.scene();
     framing_ = find_framing(scene, start);
     framing_.box = find_box_of_motions(scene, framing_.box);
-    framing_.lowest_y_m = std::min(framing_.lowest_y_m, framing_.box.low.y());
+    framing_.lowest_y_m = ground_below(find_box_of_motions(scene, drawn_bounds(start)));
   }
 
   // Draws the present state if a frame is due.

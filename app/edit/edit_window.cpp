@@ -75,6 +75,19 @@ Status EditWindow::end_frame(const Snapshot& snapshot, const ViewSettings& view)
   return {};
 }
 
+Result<Image> EditWindow::end_frame_as_picture(const Snapshot& snapshot, const ViewSettings& view) {
+  // The labels of the scene are in the background list; the other lists are windows.
+  ImDrawData scene = interface_.end_frame();
+  ImDrawList* const labels = ImGui::GetBackgroundDrawList();
+  ImDrawList** const end = scene.CmdLists + scene.CmdListsCount;
+  scene.CmdListsCount = std::find(scene.CmdLists, end, labels) != end ? 1 : 0;
+  scene.CmdLists = scene.CmdListsCount > 0 ? std::find(scene.CmdLists, end, labels) : nullptr;
+  if (Status drawn = renderer_.draw(snapshot, view, &scene); !drawn) return drawn.error();
+  Image picture;
+  renderer_.read_pixels(picture);
+  return picture;
+}
+
 Result<FrameLog> FrameLog::open(const std::filesystem::path& file) {
   std::ofstream out(file, std::ios::trunc);
   if (!out) {

@@ -43,6 +43,9 @@ class EditWindow {
   // Ends the frame, draws the scene and presents it.
   Status end_frame(const Snapshot& snapshot, const ViewSettings& view);
 
+  // Ends a frame without showing it. Returns a picture of the scene and its labels, without the interface.
+  Result<Image> end_frame_as_picture(const Snapshot& snapshot, const ViewSettings& view);
+
   // Reads the pixels of the last frame.
   void read_pixels(Image& image) const { renderer_.read_pixels(image); }
 

@@ -209,9 +209,19 @@ Status Editor::frame(double seconds) {
   handle_pointer(frame, seconds);
   if (space_mouse_) inputs_.update(*space_mouse_, seconds);
   budget_.apply(drawn_);
+  if (screenshot_ == Screenshot::scene) {
+    const auto picture = window_.end_frame_as_picture(frame.snapshot, drawn_);
+    if (!picture) return picture.error();
+    write_screenshot(picture.value());
+    return {};
+  }
   if (Status drawn = window_.end_frame(frame.snapshot, drawn_); !drawn) return drawn;
   if (log_) log_->add(shown_frame(frame));
-  if (screenshot_ != Screenshot::none) write_screenshot();
+  if (screenshot_ == Screenshot::window) {
+    Image picture;
+    window_.read_pixels(picture);
+    write_screenshot(picture);
+  }
   if (window_.window().should_close() && !unsaved_.is_open() && !conflict_.is_open()) {
     window_.window().set_should_close(false);
     finish_document(NextStep::quit);
@@ -293,12 +303,6 @@ ViewSettings Editor::view_settings(double top_px) const {
 
 Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   screenshot_ = std::exchange(asked_screenshot_, Screenshot::none);
-  if (screenshot_ == Screenshot::scene) {
-    drawn_ =
-        make_view_settings(view_, body_bounds_, window_.width_px(), window_.height_px(), {}, window_.scale());
-    lay_out_labels(frame, drawn_);
-    return {};
-  }
   const Theme& theme = window_.theme();
   ImGui::PushFont(theme.fonts.body);
   MenuState state{
@@ -310,8 +314,12 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   for (const EditAction action : choice.actions) act(action, frame);
   set_overlays(choice);
   shown_ = view_settings(choice.height_px);
-  lay_out_labels(frame, shown_);
   drawn_ = shown_;
+  if (screenshot_ == Screenshot::scene) {
+    drawn_ =
+        make_view_settings(view_, body_bounds_, window_.width_px(), window_.height_px(), {}, window_.scale());
+  }
+  lay_out_labels(frame, drawn_);
   lay_out_panel(frame);
   const int width = window_.width_px();
   const int height = window_.height_px();
@@ -779,10 +787,7 @@ void Editor::toggle_recording(const LiveFrame& frame) {
   messages_.add({Notice::Kind::information, "recording to " + file.filename().string()});
 }
 
-void Editor::write_screenshot() {
-  screenshot_ = Screenshot::none;
-  Image picture;
-  window_.read_pixels(picture);
+void Editor::write_screenshot(const Image& picture) {
   const std::filesystem::path file =
       find_free_file(parent_folder(document_.file()), document_stem(document_.file()), ".png");
   if (Status written = write_png(file, picture, {NamedBy::program}); !written) {

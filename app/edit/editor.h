@@ -102,7 +102,7 @@ class Editor {
   std::filesystem::path default_export_file() const;
   void export_to(const std::filesystem::path& file);
   void toggle_recording(const LiveFrame& frame);
-  void write_screenshot();
+  void write_screenshot(const Image& picture);
   void offer_recovery();
   void begin_without_recovery();
   void report_kept(const Result<std::optional<std::filesystem::path>>& kept);

@@ -1,21 +1,14 @@
 #include "app/frames/frame_events.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <iterator>
 #include <set>
 
+#include "app/report/quantity_text.h"
 #include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
-
-std::string decimals(double value, const char* unit) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.2f %s", value, unit);
-  return text.data();
-}
 
 // Returns the names of commands as plain words, each once: "place plane, undo".
 std::string list_commands(const std::vector<std::string>& commands) {
@@ -67,7 +60,7 @@ std::vector<FrameEvents::Seen> FrameEvents::classified() const {
   if (largest->force_n > 0.0) {
     largest->kind = Kind::largest_force;
     largest->text +=
-        (largest->text.empty() ? "" : ", ") + ("largest force, " + decimals(largest->force_n, "N"));
+        (largest->text.empty() ? "" : ", ") + ("largest force, " + decimals_text(largest->force_n, 2) + " N");
   }
   all.front().kind = all.back().kind = Kind::end;
   return all;
@@ -90,7 +83,7 @@ std::vector<SheetFrame> FrameEvents::choose(std::size_t count) const {
   }
   std::vector<SheetFrame> frames;
   for (const std::size_t i : chosen) {
-    std::string caption = decimals(all[i].time_s, "s");
+    std::string caption = decimals_text(all[i].time_s, 2) + " s";
     if (!all[i].text.empty()) caption += "  " + all[i].text;
     frames.push_back({all[i].frame, std::move(caption)});
   }

@@ -37,7 +37,7 @@ Box framed_box(const Snapshot& start) {
 }
 
 Framing find_framing(const Scene& scene, const Snapshot& start) {
-  Framing framing{framed_box(start), std::nullopt, drawn_bounds(start).low.y()};
+  Framing framing{framed_box(start), std::nullopt, ground_below(drawn_bounds(start))};
   if (scene.ground && is_level(*scene.ground)) framing.ground_y_m = scene.ground->point_m.y();
   return framing;
 }
@@ -170,7 +170,7 @@ class PaintingCrew::Painter {
     auto painter = FramePainter::make(width_px_, height_px_, &interface_turn_);
     if (!painter) return fail(painter.error());
     while (auto job = next_job()) {
-      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}, std::move(job->extra_names), job->is_frame};
+      PaintedFrame frame{job->frame, {}, std::move(job->extra_names), job->is_frame};
       const Status painted = painter->paint(job->snapshot, job->view, job->panel, frame.picture);
       if (!painted) return fail(painted.error());
       const std::lock_guard lock(mutex_);

@@ -92,7 +92,6 @@ PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const
 // A painted frame.
 struct PaintedFrame {
   std::uint64_t frame = 0;
-  double time_s = 0.0;
   Image picture;
   std::vector<std::string> extra_names;
   bool is_frame = true;

@@ -41,10 +41,14 @@ constexpr std::array<std::pair<std::string_view, bool Overlays::*>, 5> overlay_n
     {"planes", &Overlays::fixing_planes},
 }};
 
+void append_name(std::string_view name, std::string& list) {
+  list += (list.empty() ? "" : ", ") + std::string(name);
+}
+
 template <class Names>
 std::string list_names(const Names& names) {
   std::string list;
-  for (const auto& [name, value] : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  for (const auto& [name, value] : names) append_name(name, list);
   return list;
 }
 
@@ -87,7 +91,7 @@ Result<ViewDirection> parse_view_direction(std::string_view text) {
 
 std::string list_studios() {
   std::string list;
-  for (const Studio& studio : studios()) list += (list.empty() ? "" : ", ") + std::string(studio.name);
+  for (const Studio& studio : studios()) append_name(studio.name, list);
   return list;
 }
 
@@ -156,11 +160,17 @@ namespace {
 // Number of points of each body that are fitted into the picture.
 constexpr std::size_t fitted_point_count = 200'000;
 
-// Returns the vertices of the drawn triangles: all of them, or every n-th corner of a large body. A trimmed
-// face does not reach to its control points.
-std::vector<Vector3> points_to_fit(const Snapshot& snapshot) {
-  constexpr int pieces = 4;
+// The part of a model that its pictures show.
+struct Subject {
+  // Vertices of the drawn triangles: all of them, or every n-th corner of a large body. A trimmed face does
+  // not reach to its control points.
   std::vector<Vector3> points_m;
+  Box box;
+};
+
+Subject find_subject(const Snapshot& snapshot) {
+  constexpr int pieces = 4;
+  Subject subject;
   for (const BodySnapshot& body : snapshot.bodies) {
     TessellatedSurface drawn;
     if (body.is_mesh()) {
@@ -173,42 +183,48 @@ std::vector<Vector3> points_to_fit(const Snapshot& snapshot) {
     const std::size_t stride = 1 + drawn.indices().size() / fitted_point_count;
     for (std::size_t i = 0; i < drawn.indices().size(); i += stride) {
       const std::uint32_t v = drawn.indices()[i];
-      points_m.emplace_back(at.x[v], at.y[v], at.z[v]);
+      subject.points_m.emplace_back(at.x[v], at.y[v], at.z[v]);
     }
+    if (const Box one = drawn.bounds(); !one.is_empty()) subject.box.join(one);
   }
-  return points_m;
+  return subject;
 }
 
-}  // namespace
-
-ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& picture) {
+ViewSettings make_view_of(const Subject& subject, const ShownModel& model, const PictureSettings& picture) {
   ViewSettings view;
   view.camera.yaw_rad = picture.direction.yaw_rad;
   view.camera.pitch_rad = picture.direction.pitch_rad;
-  view.camera = frame(view.camera, points_to_fit(model.snapshot),
-                      make_viewport(picture.width_px, picture.height_px, {}), picture_fraction);
+  view.camera = frame(view.camera, subject.points_m, make_viewport(picture.width_px, picture.height_px, {}),
+                      picture_fraction);
   view.interface_scale = interface_scale_for(picture.height_px);
   view.overlays = picture.overlays;
   view.studio = picture.studio.studio;
   view.studio_turn_rad = picture.studio.turn_rad;
   view.keep_level = false;
   view.is_transparent = picture.is_transparent;
-  view.ground_y_m = model.ground && is_level(*model.ground) ? model.ground->point_m.y()
-                                                            : drawn_bounds(model.snapshot).low.y();
+  view.ground_y_m =
+      model.ground && is_level(*model.ground) ? model.ground->point_m.y() : ground_below(subject.box);
   return view;
 }
 
+}  // namespace
+
+ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& picture) {
+  return make_view_of(find_subject(model.snapshot), model, picture);
+}
+
 std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureSettings& picture, int count) {
+  const Subject subject = find_subject(model.snapshot);
   std::vector<ViewSettings> views;
   PictureSettings turned = picture;
   double distance_m = 0.0;
   for (int k = 0; k < count; ++k) {
     turned.direction.yaw_rad = picture.direction.yaw_rad + 2.0 * std::numbers::pi * k / count;
-    views.push_back(make_picture_view(model, turned));
+    views.push_back(make_view_of(subject, model, turned));
     distance_m = std::max(distance_m, views.back().camera.distance_m);
   }
   for (ViewSettings& view : views) {
-    view.camera.target_m = drawn_bounds(model.snapshot).centre();
+    if (!subject.box.is_empty()) view.camera.target_m = subject.box.centre();
     view.camera.distance_m = distance_m;
   }
   return views;

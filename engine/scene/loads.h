@@ -79,7 +79,7 @@ struct Ground {
   double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
-// Returns whether a ground is level, within a degree.
+// Returns whether a ground is level, within 0.8 degrees.
 inline bool is_level(const Ground& ground) {
   return ground.normal.y() > 0.9999;
 }

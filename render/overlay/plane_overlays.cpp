@@ -8,7 +8,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double fixing_overhang_fraction = 0.3;  // margin on each side / longer side of the rectangle
-// Fixed nodes within this distance of a plane count as its section of the body, in mean edges.
+// Fixed nodes within this distance of a plane count as its section of the body, in mean edges along the
+// lattice's coarsest direction.
 constexpr double section_edges = 1.5;
 constexpr float border_width_px = 1.4f;
 
@@ -40,7 +41,8 @@ Box2 compute_extent(const PlaneSnapshot& plane, const std::vector<BodySnapshot>&
   Box2 extent;
   for (const BodySnapshot& each : bodies) {
     const LatticeSnapshot& lattice = each.lattice;
-    const double reach_m = section_edges * static_cast<double>(mean_edge_m(lattice));
+    const auto edges_m = mean_edges_m(lattice);
+    const double reach_m = section_edges * *std::max_element(edges_m.begin(), edges_m.end());
     for (std::size_t i = 0; i < lattice.x.size(); ++i) {
       const Vector3 offset = Vector3(lattice.x[i], lattice.y[i], lattice.z[i]) - plane.point_m;
       if (lattice.fixed[i] == 0 || std::abs(offset.dot(plane.normal)) > reach_m) continue;

@@ -11,8 +11,8 @@
 
 namespace spoonbill {
 
-// Draws the vertical gradient behind the scene. The gradient is made once for each frame size and studio, and
-// copied to every frame, which takes a tenth of the time that drawing it would take.
+// Draws the vertical gradient behind the scene. The gradient is made again when the frame size or the studio
+// changes, and copied to every frame, which takes a tenth of the time that drawing it would take.
 class BackgroundPass {
  public:
   explicit BackgroundPass(const GlFunctions& gl) : gl_(&gl) {}

@@ -8,10 +8,10 @@
 namespace spoonbill {
 namespace {
 
-// Sums that turn with the points: their mean, and two directions, from the first half of the points to the
-// second and from their even quarters to their odd ones.
+// The mean of points in rows, and the sums of what the later half of the rows, and of each row, has beyond
+// the mean minus what the earlier half has. They turn with the points.
 struct Spread {
-  Vector3 mean_m = Vector3::Zero(), halves = Vector3::Zero(), quarters = Vector3::Zero();
+  Vector3 mean_m = Vector3::Zero(), along_rows = Vector3::Zero(), along_columns = Vector3::Zero();
 };
 
 template <class Points>
@@ -19,15 +19,19 @@ Spread find_spread(const Points& points, std::size_t rows) {
   Spread spread;
   const std::size_t count = points.x.size();
   const std::size_t columns = std::max<std::size_t>(1, count / std::max<std::size_t>(1, rows));
+  const auto at = [&](std::size_t i) { return Vector3(points.x[i], points.y[i], points.z[i]); };
+  for (std::size_t i = 0; i < count; ++i) spread.mean_m += at(i) / static_cast<double>(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Vector3 at(points.x[i], points.y[i], points.z[i]);
-    spread.mean_m += at;
-    spread.halves += 2 * (i / columns) < count / columns ? Vector3(-at) : at;
-    spread.quarters += 2 * (i % columns) < columns ? Vector3(-at) : at;
+    const Vector3 beyond = at(i) - spread.mean_m;
+    spread.along_rows += 2 * (i / columns) < count / columns ? Vector3(-beyond) : beyond;
+    spread.along_columns += 2 * (i % columns) < columns ? Vector3(-beyond) : beyond;
   }
-  if (count > 0) spread.mean_m /= static_cast<double>(count);
   return spread;
 }
+
+// The direction of the columns must be so much longer to become the x axis of the pattern, because the axes
+// change places there, which shows where a body deforms through it.
+constexpr double longer = 1.5;
 
 }  // namespace
 
@@ -37,8 +41,8 @@ Eigen::Matrix4f find_pattern_frame(const BodySnapshot& body) {
           ? find_spread(body.mesh, 16)
           : find_spread(body.surface,
                         static_cast<std::size_t>(std::max(1, body.surface.u.control_point_count())));
-  Vector3 along = spread.halves, across = spread.quarters;
-  if (across.squaredNorm() > along.squaredNorm()) std::swap(along, across);
+  Vector3 along = spread.along_rows, across = spread.along_columns;
+  if (across.norm() > longer * along.norm()) std::swap(along, across);
   if (!along.allFinite() || !(along.norm() > 0.0)) along = Vector3::UnitX();
   along.normalize();
   across -= across.dot(along) * along;

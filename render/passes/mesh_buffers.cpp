@@ -11,17 +11,19 @@ namespace spoonbill {
 SurfaceBuffers::SurfaceBuffers(const GlFunctions& gl)
     : gl_(&gl), vertex_array_(make_vertex_array(gl)), vertices_(make_buffer(gl)), indices_(make_buffer(gl)) {}
 
-void SurfaceBuffers::upload(const TessellatedSurface& surface, const std::vector<float>& visibility,
+void SurfaceBuffers::upload(const TessellatedSurface& surface, const BothSides& visibility,
                             const std::vector<float>& tint) {
-  SPOONBILL_ASSERT(visibility.size() == surface.vertex_count() && tint.size() == surface.vertex_count());
+  SPOONBILL_ASSERT(visibility.front.size() == surface.vertex_count());
+  SPOONBILL_ASSERT(visibility.back.size() == surface.vertex_count());
+  SPOONBILL_ASSERT(tint.size() == surface.vertex_count());
   const GridSamples<float>& samples = surface.samples();
   const std::size_t plane_bytes = surface.vertex_count() * sizeof(float);
   gl_->BindVertexArray(vertex_array_.id());
   gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(8 * plane_bytes), nullptr, GL_STREAM_DRAW);
+  gl_->BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(9 * plane_bytes), nullptr, GL_STREAM_DRAW);
   GLuint attribute = 0;
-  for (const auto* plane :
-       {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz, &visibility, &tint}) {
+  for (const auto* plane : {&samples.x, &samples.y, &samples.z, &samples.nx, &samples.ny, &samples.nz,
+                            &visibility.front, &visibility.back, &tint}) {
     const std::size_t start = attribute * plane_bytes;
     gl_->BufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(start), static_cast<GLsizeiptr>(plane_bytes),
                        plane->data());
@@ -44,8 +46,7 @@ void SurfaceBuffers::draw() const {
   gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level,
-                          bool is_occluded) {
+Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, const MeshChoice& choice) {
   surfaces_.resize(snapshot.bodies.size());
   tints_.resize(snapshot.bodies.size());
   while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
@@ -57,7 +58,7 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, boo
       surfaces_[i].update(body.mesh);
     } else {
       if (Status net = check_net(body.surface); !net) return net;
-      const SamplingLevel last = keep_level ? surfaces_[i].level() : SamplingLevel();
+      const SamplingLevel last = choice.keeps_level ? surfaces_[i].level() : SamplingLevel();
       const SamplingLevel level = choose_sampling_level(body.surface, pixels_per_metre, last);
       if (Status updated = surfaces_[i].update(body.surface, level); !updated) return updated;
     }
@@ -65,15 +66,18 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, boo
     if (one.is_empty()) continue;
     bounds_.join(one);
   }
-  if (is_occluded) {
+  if (choice.is_occluded) {
     occlusion_.update(surfaces_);
   } else {
     occlusion_ = {};
   }
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    if (!is_occluded) open_.assign(surfaces_[i].vertex_count(), 1.0f);
-    tints_[i].update(snapshot.bodies[i].lattice, surfaces_[i], keep_level);
-    buffers_[i].upload(surfaces_[i], is_occluded ? occlusion_.visibility(i) : open_, tints_[i].weights());
+    const std::size_t count = surfaces_[i].vertex_count();
+    if (!choice.is_occluded) open_.assign(count);
+    untinted_.assign(count, 0.0f);
+    if (choice.shows_fixed) tints_[i].update(snapshot.bodies[i].lattice, surfaces_[i], choice.keeps_level);
+    buffers_[i].upload(surfaces_[i], choice.is_occluded ? occlusion_.visibility(i) : open_,
+                       choice.shows_fixed ? tints_[i].weights() : untinted_);
   }
   return {};
 }

@@ -17,7 +17,7 @@
 namespace spoonbill {
 
 // A tessellated surface in GL buffers: the indices, and a separate array for each attribute (x, y, z, nx, ny,
-// nz, visibility and tint at locations 0 to 7).
+// nz, visibility of both sides, and tint at locations 0 to 8).
 class SurfaceBuffers {
  public:
   explicit SurfaceBuffers(const GlFunctions& gl);
@@ -25,8 +25,7 @@ class SurfaceBuffers {
   // Uploads the samples, and the indices if the topology has changed. The old storage is orphaned, because
   // overwriting it would wait for the frame that still reads it.
   // `visibility` and `tint` have a value for each vertex (see AmbientOcclusion and FixedTint).
-  void upload(const TessellatedSurface& surface, const std::vector<float>& visibility,
-              const std::vector<float>& tint);
+  void upload(const TessellatedSurface& surface, const BothSides& visibility, const std::vector<float>& tint);
 
   // Draws the surface with the program in use.
   void draw() const;
@@ -43,15 +42,20 @@ class SurfaceBuffers {
   bool closed_ = false;
 };
 
+// How the surfaces of a snapshot are prepared.
+struct MeshChoice {
+  bool keeps_level = true;   // keeps the tessellation while it is neither too coarse nor much too fine
+  bool is_occluded = true;   // computes visibility; otherwise it is 1
+  bool shows_fixed = false;  // computes the tint of the fixed part; otherwise it is 0
+};
+
 // The surfaces of a snapshot, tessellated for the screen.
 class BodyMeshes {
  public:
   explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
 
-  // Updates all surfaces to the snapshot. If `keep_level`, the tessellation level of the last frame is kept
-  // while it is neither too coarse nor much too fine. Returns the error of the first surface that cannot be
-  // tessellated. Visibility is computed only if `is_occluded`; otherwise it is 1.
-  Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level, bool is_occluded);
+  // Updates all surfaces to the snapshot. Returns the error of the first surface that cannot be tessellated.
+  Status update(const Snapshot& snapshot, double pixels_per_metre, const MeshChoice& choice);
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
@@ -63,7 +67,8 @@ class BodyMeshes {
   std::vector<SurfaceBuffers> buffers_;
   AmbientOcclusion occlusion_;
   std::vector<FixedTint> tints_;
-  std::vector<float> open_;  // visibility without occlusion
+  BothSides open_;               // visibility without occlusion
+  std::vector<float> untinted_;  // tint without a fixed part
   Box bounds_;
 };
 

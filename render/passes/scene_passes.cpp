@@ -54,8 +54,11 @@ ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const Vi
 }
 
 SurfaceDrawing choose_drawing(const BodySnapshot& body, const ViewSettings& settings) {
-  SurfaceDrawing drawing{find_material_look(body.material.name), find_pattern_frame(body), settings.occlusion,
-                         settings.reflections, settings.overlays.fixed_nodes};
+  SurfaceDrawing drawing;
+  drawing.look = find_material_look(body.material.name);
+  drawing.reflects = settings.reflections;
+  drawing.shows_fixed = settings.overlays.fixed_nodes;
+  if (drawing.look.pattern != SurfacePattern::none) drawing.world_to_pattern = find_pattern_frame(body);
   if (settings.see_through_body) {
     drawing.look.translucency = ghost_translucency;
     drawing.look.metalness = 0.0f;
@@ -97,8 +100,10 @@ Result<ScenePasses> ScenePasses::make(const GlFunctions& gl) {
 }
 
 Status ScenePasses::prepare(const Snapshot& snapshot, const ViewSettings& settings) {
+  drawings_.clear();
   for (const BodySnapshot& body : snapshot.bodies) {
-    if (Status made = passes_.surface.prepare(choose_drawing(body, settings).variant()); !made) return made;
+    drawings_.push_back(choose_drawing(body, settings));
+    if (Status made = passes_.surface.prepare(drawings_.back().variant()); !made) return made;
   }
   return {};
 }
@@ -131,9 +136,8 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
   const auto draw_bodies = [&](bool are_clear) {
     for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {
-      const SurfaceDrawing drawing = choose_drawing(snapshot.bodies[b], settings);
-      if (drawing.look.is_clear() != are_clear) continue;
-      passes_.surface.draw(view, bodies.buffers()[b], drawing, tool, shadow);
+      if (drawings_[b].look.is_clear() != are_clear) continue;
+      passes_.surface.draw(view, bodies.buffers()[b], drawings_[b], tool, shadow);
     }
   };
   draw_bodies(false);

@@ -40,7 +40,7 @@ class ScenePasses {
   // drawn.
   Status update_tool(const ToolSnapshot& tool) { return passes_.tool.update(tool); }
 
-  // Makes the programs that the looks of the bodies need. Call before draw().
+  // Chooses how the bodies are drawn, and makes the programs that this needs. Call before draw().
   Status prepare(const Snapshot& snapshot, const ViewSettings& settings);
 
   // Draws the shadow maps; does nothing if shadows are off. Call before draw().
@@ -81,7 +81,8 @@ class ScenePasses {
   void draw_touched(const FrameView& view, const Snapshot& snapshot);
 
   Passes passes_;
-  std::vector<OverlayLine> lines_;  // working memory, reused from frame to frame
+  std::vector<SurfaceDrawing> drawings_;  // of the bodies of the snapshot
+  std::vector<OverlayLine> lines_;        // working memory, reused from frame to frame
   std::vector<OverlayMark> marks_;
 };
 

@@ -24,13 +24,14 @@ layout(location = 3) in float nx;
 layout(location = 4) in float ny;
 layout(location = 5) in float nz;
 layout(location = 6) in float visibility;
-layout(location = 7) in float tint;
+layout(location = 7) in float back_visibility;
+layout(location = 8) in float tint;
 out vec3 position;
 out vec3 normal;
-out float visible;
+out vec2 visible;
 out float fixed_part;
 void main() {
-  visible = visibility;
+  visible = vec2(visibility, back_visibility);
   fixed_part = tint;
   position = vec3(x, y, z);
   normal = vec3(nx, ny, nz);
@@ -51,7 +52,6 @@ uniform float texel;
 uniform float texel_m;
 uniform int shadowed;
 uniform int two_sided;
-uniform int occluded;
 uniform vec4 fixed_tint;
 uniform vec3 base_colour;
 uniform float roughness;
@@ -59,7 +59,7 @@ uniform float metalness;
 uniform float translucency;
 in vec3 position;
 in vec3 normal;
-in float visible;
+in vec2 visible;
 in float fixed_part;
 out vec4 result;
 
@@ -75,8 +75,9 @@ float key_past_body(vec3 n) {
 
 void main() {
   vec3 n = normalize(normal);
-  if (two_sided != 0 && !gl_FrontFacing) n = -n;
-  Skin skin = patterned(Skin(base_colour, n, occluded != 0 ? visible : 1.0), position);
+  bool is_back = two_sided != 0 && !gl_FrontFacing;
+  if (is_back) n = -n;
+  Skin skin = patterned(Skin(base_colour, n, is_back ? visible.y : visible.x), position);
   float key = 1.0;
   float sky = skin.visible;
   if (shadowed != 0) {
@@ -123,7 +124,6 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   const float opacity = drawing.shows_fixed ? static_cast<float>(fixed.a) / 255.0f : 0.0f;
   program.set("fixed_tint", Eigen::Vector4f(srgb8_to_linear(fixed.r), srgb8_to_linear(fixed.g),
                                             srgb8_to_linear(fixed.b), opacity));
-  program.set("occluded", drawing.is_occluded ? 1 : 0);
   program.set("base_colour", look.base_colour);
   program.set("roughness", look.roughness);
   program.set("metalness", look.metalness);

@@ -32,8 +32,7 @@ struct SurfaceVariant {
 // How one surface is drawn.
 struct SurfaceDrawing {
   SurfaceLook look;
-  Eigen::Matrix4f world_to_pattern;  // see find_pattern_frame()
-  bool is_occluded = true;           // whether light is dimmed by the visibility of the vertices
+  Eigen::Matrix4f world_to_pattern = Eigen::Matrix4f::Identity();  // see find_pattern_frame()
   bool reflects = true;
   bool shows_fixed = false;  // tints the fixed part
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -12,9 +13,17 @@
 namespace spoonbill {
 namespace {
 
-// Pairs of a vertex and a disc in one update, which bounds its time, and the discs that result from it.
-constexpr std::size_t most_pairs = 4'000'000;
-constexpr std::size_t fewest_discs = 48, most_discs = 512;
+// Pairs of a vertex and a disc in one update, and the discs that result from it. Beyond the second number, an
+// update would take a second or more.
+constexpr std::size_t wanted_pairs = 8'000'000, most_pairs = 400'000'000;
+constexpr std::size_t fewest_discs = 64, most_discs = 1024;
+
+// Returns the number of discs that each body gets: a power of two, so that it changes rarely.
+std::size_t choose_disc_count(std::size_t vertices, std::size_t bodies) {
+  const std::size_t all =
+      std::clamp(wanted_pairs / std::max<std::size_t>(vertices, 1), fewest_discs, most_discs);
+  return std::bit_floor(std::max<std::size_t>(all / std::max<std::size_t>(bodies, 1), 1));
+}
 
 Eigen::Vector3f point(const GridSamples<float>& samples, std::uint32_t at) {
   return {samples.x[at], samples.y[at], samples.z[at]};
@@ -42,37 +51,43 @@ void AmbientOcclusion::Discs::add(const Eigen::Vector3f& centre_m, const Eigen::
 }
 
 void AmbientOcclusion::update(const std::vector<TessellatedSurface>& surfaces) {
-  if (!have_moved(surfaces)) return;
   std::size_t vertices = 0;
   for (const TessellatedSurface& surface : surfaces) vertices += surface.vertex_count();
-  if (vertices == 0) return;
-  const std::size_t wanted = std::clamp(most_pairs / vertices, fewest_discs, most_discs) / surfaces.size();
+  const std::size_t wanted = choose_disc_count(vertices, surfaces.size());
+  if (!have_moved(surfaces, wanted)) return;
   discs_.clear();
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     Groups& groups = bodies_[b].groups;
-    if (!groups.fit(surfaces[b])) group(surfaces[b], std::max<std::size_t>(wanted, 16), groups);
+    if (!groups.fit(surfaces[b], wanted)) group(surfaces[b], wanted, groups);
     append_discs(surfaces[b], groups);
   }
-  for (std::size_t b = 0; b < surfaces.size(); ++b) {
-    const GridSamples<float>& samples = surfaces[b].samples();
-    std::vector<float>& visibility = bodies_[b].visibility;
-    visibility.resize(surfaces[b].vertex_count());
-    for (std::size_t v = 0; v < visibility.size(); ++v) {
-      const Eigen::Vector3f normal(samples.nx[v], samples.ny[v], samples.nz[v]);
-      const float seen = 1.0f - hidden(point(samples, static_cast<std::uint32_t>(v)), normal);
-      visibility[v] = std::isfinite(seen) ? std::clamp(seen, 0.0f, 1.0f) : 1.0f;
-    }
+  if (vertices * discs_.count() > most_pairs) discs_.clear();
+  for (std::size_t b = 0; b < surfaces.size(); ++b) find_visibility(surfaces[b], bodies_[b].visibility);
+}
+
+void AmbientOcclusion::find_visibility(const TessellatedSurface& surface, BothSides& visibility) const {
+  const GridSamples<float>& samples = surface.samples();
+  visibility.assign(surface.vertex_count());
+  const auto seen_from = [&](const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) {
+    const float seen = 1.0f - hidden(point_m, normal);
+    return std::isfinite(seen) ? std::clamp(seen, 0.0f, 1.0f) : 1.0f;
+  };
+  for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
+    const Eigen::Vector3f point_m = point(samples, static_cast<std::uint32_t>(v));
+    const Eigen::Vector3f normal(samples.nx[v], samples.ny[v], samples.nz[v]);
+    visibility.front[v] = seen_from(point_m, normal);
+    visibility.back[v] = surface.is_closed() ? visibility.front[v] : seen_from(point_m, -normal);
   }
 }
 
-bool AmbientOcclusion::have_moved(const std::vector<TessellatedSurface>& surfaces) {
+bool AmbientOcclusion::have_moved(const std::vector<TessellatedSurface>& surfaces, std::size_t wanted) {
   bool moved = bodies_.size() != surfaces.size();
   bodies_.resize(surfaces.size());
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
     const GridSamples<float>& samples = surfaces[b].samples();
     const std::size_t count = samples.x.size();
     std::vector<float>& last = bodies_[b].positions_m;
-    moved |= last.size() != 3 * count || !bodies_[b].groups.fit(surfaces[b]);
+    moved |= last.size() != 3 * count || !bodies_[b].groups.fit(surfaces[b], wanted);
     last.resize(3 * count);
     std::size_t start = 0;
     for (const auto* plane : {&samples.x, &samples.y, &samples.z}) {
@@ -96,25 +111,26 @@ class BlockGrouping {
   BlockGrouping(const TessellatedSurface& surface, std::size_t wanted)
       : surface_(&surface), columns_(surface.columns()), rows_(surface.rows()) {
     const double ratio = static_cast<double>(rows_) / static_cast<double>(columns_);
-    const double down = std::sqrt(static_cast<double>(wanted) * ratio);
+    const double down =
+        std::clamp(std::sqrt(static_cast<double>(wanted) * ratio), 1.0, static_cast<double>(wanted));
     block_rows_ = block_size(rows_, down);
     block_columns_ = block_size(columns_, static_cast<double>(wanted) / down);
   }
 
-  // Vertices on trim loops come after the samples, so that the smallest index of a triangle is a sample's,
-  // unless all of its vertices are on a loop.
+  // Vertices on trim loops come after the samples. Returns nothing for a triangle with no other vertices.
   std::optional<GroupKey> operator()(std::size_t triangle) const {
     const auto* corners = &surface_->indices()[triangle];
-    const std::size_t first = std::min(*std::min_element(corners, corners + 3), last_sample());
+    const std::size_t first = *std::min_element(corners, corners + 3);
+    if (first >= rows_ * columns_) return std::nullopt;
     return GroupKey{static_cast<int>(first / columns_ / block_rows_),
                     static_cast<int>(first % columns_ / block_columns_), 0, 0};
   }
 
  private:
   static std::size_t block_size(std::size_t samples, double blocks) {
-    return std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(samples) / blocks));
+    return std::max<std::size_t>(1,
+                                 static_cast<std::size_t>(std::ceil(static_cast<double>(samples) / blocks)));
   }
-  std::uint32_t last_sample() const { return static_cast<std::uint32_t>(rows_ * columns_ - 1); }
 
   const TessellatedSurface* surface_;
   std::size_t columns_, rows_, block_rows_ = 1, block_columns_ = 1;
@@ -176,6 +192,7 @@ std::map<GroupKey, std::vector<std::uint32_t>> group_triangles(std::size_t index
 void AmbientOcclusion::group(const TessellatedSurface& surface, std::size_t wanted, Groups& groups) {
   groups.topology_version = surface.topology_version();
   groups.index_count = surface.indices().size();
+  groups.wanted = wanted;
   groups.triangles.clear();
   groups.ends.clear();
   const auto found = surface.is_mesh() ? group_triangles(groups.index_count, CellGrouping(surface, wanted))

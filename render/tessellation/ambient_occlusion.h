@@ -10,6 +10,17 @@
 
 namespace spoonbill {
 
+// Visibility of each vertex of a surface, from 0 to 1, on the side of its normal and on the other.
+struct BothSides {
+  std::vector<float> front, back;
+
+  // Makes everything visible.
+  void assign(std::size_t count) {
+    front.assign(count, 1.0f);
+    back.assign(count, 1.0f);
+  }
+};
+
 // The triangles of all bodies are gathered into discs; the light that each disc keeps from a vertex is its
 // form factor (point to disc, Bunnell 2005), and the sum of these is taken from 1. Overlapping discs are
 // counted twice, so that deep corners are darker than they should be. What a smooth body hides of itself is
@@ -17,30 +28,35 @@ namespace spoonbill {
 // owner, one thread.
 class AmbientOcclusion {
  public:
-  // Computes the visibility of all vertices. Does nothing if no vertex has moved since the last call.
+  // Computes the visibility of all vertices. Does nothing if no vertex has moved since the last call. Where
+  // there are so many vertices and bodies that it would take seconds, everything is visible.
   void update(const std::vector<TessellatedSurface>& surfaces);
 
   // Returns for each vertex of a surface how much of the hemisphere above it no body hides, weighted by the
-  // cosine: from 0 to 1.
-  const std::vector<float>& visibility(std::size_t surface) const { return bodies_[surface].visibility; }
+  // cosine. The back of a closed surface is as visible as its front.
+  const BothSides& visibility(std::size_t surface) const { return bodies_[surface].visibility; }
 
  private:
   // Triangles of a body, in groups that become discs. They stay the same while the body deforms, so that
-  // nothing flickers. Those of a mesh depend on its first shape.
+  // nothing flickers.
   struct Groups {
     std::uint64_t topology_version = 0;
     std::size_t index_count = 0;
+    std::size_t wanted = 0;                // number of groups that was asked for
     std::vector<std::uint32_t> triangles;  // ordered by group
     std::vector<std::uint32_t> ends;       // end of each group in `triangles`
 
-    bool fit(const TessellatedSurface& surface) const {
-      return topology_version == surface.topology_version() && index_count == surface.indices().size();
+    // Returns whether the groups are those of a surface. Groups of a mesh depend on its first shape, so that
+    // they stay, however many are wanted.
+    bool fit(const TessellatedSurface& surface, std::size_t wanted_now) const {
+      return topology_version == surface.topology_version() && index_count == surface.indices().size() &&
+             (surface.is_mesh() || wanted == wanted_now);
     }
   };
   struct Body {
     Groups groups;
     std::vector<float> positions_m;  // at the last update, x then y then z
-    std::vector<float> visibility;
+    BothSides visibility;
   };
   // Discs as separate arrays; `x` to `z` are centres, `nx` to `nz` normals.
   struct Discs {
@@ -52,7 +68,8 @@ class AmbientOcclusion {
     std::size_t count() const { return x.size(); }
   };
 
-  bool have_moved(const std::vector<TessellatedSurface>& surfaces);
+  bool have_moved(const std::vector<TessellatedSurface>& surfaces, std::size_t wanted);
+  void find_visibility(const TessellatedSurface& surface, BothSides& visibility) const;
   static void group(const TessellatedSurface& surface, std::size_t wanted, Groups& groups);
   void append_discs(const TessellatedSurface& surface, const Groups& groups);
   float hidden(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) const;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -55,6 +58,16 @@ TEST(FrameEvents, TooManyAreThinned) {
   EXPECT_EQ(
       std::count_if(frames.begin(), frames.end(), [](const SheetFrame& each) { return each.frame == 501; }),
       1);
+}
+
+TEST(FrameEvents, CommandsGiveWayFirst) {
+  FrameEvents events;
+  for (std::uint64_t frame = 0; frame < 40; ++frame)
+    events.add(frame, 0.0, frame >= 20 && frame < 25 ? 1.0 : 0.0, {"undo"});
+  const std::vector<std::uint64_t> chosen = numbers(events.choose(6));
+  for (const std::uint64_t must : {0u, 20u, 25u, 39u})
+    EXPECT_EQ(std::count(chosen.begin(), chosen.end(), must), 1) << must;
+  EXPECT_EQ(chosen.size(), 6u);
 }
 
 }  // namespace

@@ -57,6 +57,13 @@ TEST(ModelPicture, TurnsAtTheSameDistance) {
   EXPECT_GT(views[3].camera.yaw_rad, views[2].camera.yaw_rad);
 }
 
+TEST(ModelPicture, StudiosAreParsed) {
+  EXPECT_EQ(parse_studio("dark")->studio.name, "dark");
+  EXPECT_NEAR(parse_studio("contrast,-30")->turn_rad, -M_PI / 6.0, 1e-12);
+  for (const char* wrong : {"", "darkness", "dark,", "dark,x", "dark,361", ",30", "dark,nan"})
+    EXPECT_FALSE(parse_studio(wrong)) << wrong;
+}
+
 TEST(ModelPicture, StandsOnALevelGroundOnly) {
   ShownModel model = read_shown_model(bundled_handle, {}).value();
   const double lowest_m = make_picture_view(model, {}).ground_y_m;

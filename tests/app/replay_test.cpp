@@ -80,6 +80,16 @@ TEST(Replay, TakesAScreenshotBetweenTheFramesItDraws) {
   EXPECT_EQ(names_in(place.path("20")).count("frame-0003.png"), 0u);
 }
 
+TEST(Replay, ARecordingWithoutTicksHasOneFrame) {
+  const Workplace place;
+  const std::string whole = content_of(place.record("bend.jsonl"));
+  place.write("none.jsonl", whole.substr(0, whole.find('\n') + 1));
+  const Outcome outcome =
+      run({"replay", place.text("none.jsonl"), "--out", place.text("out"), "--size", "96x64"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(names_in(place.path("out")), (std::set<std::string>{"frame-0000.png", "contact-sheet.png"}));
+}
+
 TEST(Replay, ShowsThePanelOnlyIfAsked) {
   const Workplace place;
   const std::string recording = place.record("bend.jsonl").string();

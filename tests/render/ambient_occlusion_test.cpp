@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "render/tessellation/tessellated_surface.h"
+#include "tests/render/sample_scene.h"
+#include "tests/render/tessellated.h"
 
 namespace spoonbill {
 namespace {
@@ -23,6 +25,7 @@ constexpr double pi = std::numbers::pi;
 // Returns a mesh of a surface over the unit square, in n x n cells. Its normals point along du x dv.
 TessellatedSurface sheet(int n, const std::function<Vector3(double, double)>& at) {
   MeshSnapshot mesh;
+  mesh.is_closed = false;
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) {
       const Vector3 point_m = at(static_cast<double>(i) / n, static_cast<double>(j) / n);
@@ -61,10 +64,14 @@ std::vector<TessellatedSurface> scene_of(Surfaces... surfaces) {
   return scene;
 }
 
-double mean_visibility(const AmbientOcclusion& occlusion, std::size_t surface) {
+double mean_of(const std::vector<float>& values) {
   double sum = 0.0;
-  for (const float visible : occlusion.visibility(surface)) sum += visible;
-  return sum / static_cast<double>(occlusion.visibility(surface).size());
+  for (const float value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double mean_visibility(const AmbientOcclusion& occlusion, std::size_t surface) {
+  return mean_of(occlusion.visibility(surface).front);
 }
 
 // From every point inside a sphere's skin, a part of the skin hides its area over that of the sphere.
@@ -81,7 +88,37 @@ TEST(AmbientOcclusion, InsideABowlIsThatOfASphere) {
 TEST(AmbientOcclusion, OutsideABallNothingIsHidden) {
   AmbientOcclusion occlusion;
   occlusion.update(scene_of(bowl(pi, false)));
-  for (const float visible : occlusion.visibility(0)) EXPECT_GT(visible, 0.97f);
+  for (const float visible : occlusion.visibility(0).front) EXPECT_GT(visible, 0.97f);
+}
+
+TEST(AmbientOcclusion, TheBackOfAnOpenBowlIsInTheOpen) {
+  AmbientOcclusion occlusion;
+  for (const bool inwards : {true, false}) {
+    occlusion.update(scene_of(bowl(1.2, inwards)));
+    const BothSides& seen = occlusion.visibility(0);
+    EXPECT_GT(mean_of(inwards ? seen.back : seen.front), 0.97);
+    EXPECT_NEAR(mean_of(inwards ? seen.front : seen.back), 0.5 * (1.0 + std::cos(1.2)), 0.04);
+  }
+}
+
+// The triangles of a B-spline surface are grouped by its samples.
+TEST(AmbientOcclusion, ASurfaceHidesWhatIsBelowIt) {
+  const Snapshot snapshot = sample_scene();
+  const auto handle = [&](double x_m, double y_m) {
+    SurfaceSnapshot moved = snapshot.bodies[0].surface;
+    for (float& x : moved.x) x += static_cast<float>(x_m);
+    for (float& y : moved.y) y += static_cast<float>(y_m);
+    return tessellated(moved, 8000.0);
+  };
+  AmbientOcclusion occlusion;
+  occlusion.update(scene_of(handle(0.0, 0.0), handle(1.0, 0.0)));
+  const double apart = mean_visibility(occlusion, 0);
+  EXPECT_GT(apart, 0.9);
+  occlusion.update(scene_of(handle(0.0, 0.0), handle(0.0, 0.006)));
+  EXPECT_LT(mean_visibility(occlusion, 0), apart - 0.07);
+  occlusion.update(scene_of(handle(0.0, 0.0)));
+  EXPECT_NEAR(mean_visibility(occlusion, 0), apart, 0.02);
+  occlusion.update({});
 }
 
 // The form factor of a square from a point before its middle.
@@ -95,8 +132,8 @@ TEST(AmbientOcclusion, OfASquareAboveIsItsFormFactor) {
     occlusion.update(scene_of(square(0.0, true), square(height, false)));
     const double x = 0.5 / height, slant = x / std::sqrt(1.0 + x * x);
     const double factor = 4.0 / (2.0 * pi) * 2.0 * slant * std::atan(slant);
-    const std::size_t middle = occlusion.visibility(0).size() / 2;
-    EXPECT_NEAR(1.0 - static_cast<double>(occlusion.visibility(0)[middle]), factor, 0.03) << height;
+    const std::size_t middle = occlusion.visibility(0).front.size() / 2;
+    EXPECT_NEAR(1.0 - static_cast<double>(occlusion.visibility(0).front[middle]), factor, 0.03) << height;
   }
 }
 
@@ -116,11 +153,11 @@ TEST(AmbientOcclusion, IsFiniteForAShapeThatIsNot) {
   const float nan = std::nanf("");
   occlusion.update(
       scene_of(sheet(4, [=](double u, double v) { return Vector3(u, v > 0.5 ? nan : 0.0, v); })));
-  for (const float visible : occlusion.visibility(0)) {
+  for (const float visible : occlusion.visibility(0).front) {
     EXPECT_TRUE(visible >= 0.0f && visible <= 1.0f);
   }
   occlusion.update(scene_of(sheet(4, [](double, double) { return Vector3(1.0, 1.0, 1.0); })));
-  for (const float visible : occlusion.visibility(0)) EXPECT_EQ(visible, 1.0f);
+  for (const float visible : occlusion.visibility(0).front) EXPECT_EQ(visible, 1.0f);
 }
 
 }  // namespace
