@@ -208,13 +208,13 @@ Status Editor::frame(double seconds) {
   if (Status laid_out = lay_out(frame, seconds); !laid_out) return laid_out;
   handle_pointer(frame, seconds);
   if (space_mouse_) inputs_.update(*space_mouse_, seconds);
-  budget_.apply(drawn_);
   if (screenshot_ == Screenshot::scene) {
     const auto picture = window_.end_frame_as_picture(frame.snapshot, drawn_);
     if (!picture) return picture.error();
     write_screenshot(picture.value());
     return {};
   }
+  budget_.apply(drawn_);
   if (Status drawn = window_.end_frame(frame.snapshot, drawn_); !drawn) return drawn;
   if (log_) log_->add(shown_frame(frame));
   if (screenshot_ == Screenshot::window) {
