@@ -41,6 +41,9 @@ std::vector<std::uint8_t> gradient(const Studio& studio, int width_px, int heigh
   return texels;
 }
 
+// The part that is left of the floor's sRGB colour where no light reaches it: slightly blue.
+const Eigen::Vector3f deepest_shadow(0.107f, 0.118f, 0.150f);
+
 constexpr const char* ground_vertex_source = R"(
 uniform mat4 world_to_clip;
 uniform vec2 corner;
@@ -57,11 +60,12 @@ void main() {
 
 constexpr const char* ground_fragment_source = R"(
 uniform sampler2D ground_dark;
+uniform vec3 shadow_colour;
 in vec2 uv;
 out vec4 result;
 void main() {
   float dark = texture(ground_dark, uv).r;
-  result = vec4(vec3(0.10, 0.11, 0.14) * dark, dark);
+  result = vec4(shadow_colour * dark, dark);
 }
 )";
 
@@ -127,6 +131,8 @@ void GroundPass::draw_shadow(const FrameView& view, const ShadowPass& shadow) co
   program_.set("size", Eigen::Vector2f(area.side_m, area.side_m));
   program_.set("used", area.used_fraction);
   program_.set("ground_dark", 0);
+  const Eigen::Vector3f floor = view.studio.bottom_srgb / 255.0f;
+  program_.set("shadow_colour", floor.cwiseProduct(deepest_shadow).eval());
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindTexture(GL_TEXTURE_2D, shadow.ground_dark());
   gl_->BindVertexArray(vertex_array_.id());

@@ -121,6 +121,24 @@ TEST_F(Rendering, StudiosDiffer) {
   EXPECT_GT(change([](ViewSettings& s) { s.studio_turn_rad = 5.0 * M_PI / 180.0; }), tolerance);
 }
 
+TEST_F(Rendering, ShadowsDarkenInEveryStudio) {
+  settings_.overlays = {};
+  settings_.overlays.ground_grid = settings_.overlays.scale_bar = settings_.overlays.force = false;
+  for (const Studio& studio : studios()) {
+    settings_.studio = studio;
+    settings_.shadow = true;
+    const Image with = picture();
+    settings_.shadow = false;
+    const Image without = picture();
+    int darker = 0;
+    for (std::size_t i = 0; i < with.rgba.size(); ++i) {
+      ASSERT_LE(with.rgba[i], without.rgba[i] + 2) << studio.name;
+      if (with.rgba[i] + 8 < without.rgba[i]) ++darker;
+    }
+    EXPECT_GT(darker, 1000) << studio.name;
+  }
+}
+
 TEST_F(Rendering, MissingReflectionsAreNoticed) {
   for (const char* material : {"steel-304", "abs"}) {
     snapshot_.bodies[0].material.name = material;
