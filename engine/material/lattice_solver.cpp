@@ -106,9 +106,16 @@ struct Substeps {
   int slowed_lattice = -1;
 };
 
+// Part of its step that a lattice may take in real time if nothing damps it. The longer step is in resonance
+// with the fastest springs: three steps at h w = sqrt(3), four at sqrt(2), where the limit is 2 (Schlick,
+// Mandziuk, Skeel and Srinivas 1998). Their energy then grows, unless they are damped.
+constexpr double undamped_part = 0.5;
+
 Substeps choose_substeps(const SpringLattice& lattice, const RelaxSettings& settings) {
   const int most = substep_ceiling * settings.substeps;
-  const double required = std::ceil(settings.time_s / lattice.stable_step_s(stability_fraction));
+  const bool is_undamped = settings.is_real_time && !(lattice.damping_time_s() > 0.0f);
+  const double fraction = is_undamped ? undamped_part * stability_fraction : stability_fraction;
+  const double required = std::ceil(settings.time_s / lattice.stable_step_s(fraction));
   if (!(required <= most)) return {most, true};
   return {std::max(settings.substeps, static_cast<int>(required)), false};
 }
