@@ -120,7 +120,7 @@ Camera frame(const Camera& camera, std::span<const Vector3> points_m, const View
   if (box.is_empty()) return camera;
   Camera framed = camera;
   framed.target_m = box.centre();
-  const double smallest_distance = 1e-3;
+  const double smallest_distance = 1e-6;
   // The centre of the projected box moves with the distance, because perspective enlarges the near side.
   // Twelve iterations converge below a hundredth of a pixel.
   for (int round = 0; round < 12; ++round) {

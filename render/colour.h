@@ -32,8 +32,6 @@ inline constexpr Colour fixing_plane{28, 150, 84, 40};
 inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
 inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
 inline constexpr Colour tool{52, 118, 204};
-inline constexpr Colour ground_line{70, 78, 88};
-inline constexpr Colour scale_bar{48, 54, 62};
 inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines
 inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
 inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells

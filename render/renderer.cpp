@@ -1,12 +1,14 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "engine/base/assert.h"
 #include "engine/base/file.h"
 #include "render/gl/pipeline.h"
 #include "render/gl/render_target.h"
@@ -33,6 +35,29 @@ ImFont* add_size(ImFontAtlas& atlas, const std::string& file, float size_px) {
   void* copy = IM_ALLOC(file.size());
   std::memcpy(copy, file.data(), file.size());
   return atlas.AddFontFromMemoryTTF(copy, static_cast<int>(file.size()), size_px, &config, glyph_ranges);
+}
+
+PixelSize choose_scene_size(PixelSize frame, const ViewSettings& settings) {
+  if (settings.samples > 0) return frame;
+  SPOONBILL_ASSERT(settings.resolution >= 0.5 && settings.resolution <= 1.0);
+  const auto part = [&](int size_px) {
+    return std::max(1, static_cast<int>(std::ceil(settings.resolution * size_px)));
+  };
+  return {part(frame.width_px), part(frame.height_px)};
+}
+
+// Returns the view of the scene layer. Its lines and marks cover as much of the picture as in the frame.
+FrameView make_scene_view(const FrameView& frame, PixelSize scene) {
+  FrameView view = frame;
+  const double part_x = static_cast<double>(scene.width_px) / frame.viewport.width_px;
+  const double part_y = static_cast<double>(scene.height_px) / frame.viewport.height_px;
+  const Rectangle& free_px = frame.viewport.free_px;
+  view.viewport = {scene.width_px,
+                   scene.height_px,
+                   {part_x * free_px.x, part_y * free_px.y, part_x * free_px.width, part_y * free_px.height}};
+  view.interface_scale *= static_cast<float>(part_x);
+  view.pixel_depth_ratio *= static_cast<float>(part_x);
+  return view;
 }
 
 }  // namespace
@@ -69,8 +94,9 @@ class Renderer::Parts {
 
   Status draw(const Snapshot& snapshot, const ViewSettings& settings, const ImDrawData* interface) {
     if (Status current = context_->make_current(); !current) return current;
-    if (Status target = fit_target(settings.samples); !target) return target;
+    if (Status target = fit_target(settings); !target) return target;
     const FrameView view = make_frame_view(settings, target_->width_px(), target_->height_px());
+    const FrameView scene_view = make_scene_view(view, target_->scene_size());
     const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
     if (Status bodies = bodies_.update(
             snapshot, detail, {settings.keep_level, settings.occlusion, settings.overlays.fixed_nodes});
@@ -80,7 +106,7 @@ class Renderer::Parts {
     if (Status looks = scene_->prepare(snapshot, settings); !looks) return looks;
     if (Status tool = scene_->update_tool(snapshot.tool); !tool) return tool;
     scene_->draw_shadows(view, snapshot, settings, bodies_);
-    scene_->draw(view, snapshot, settings, bodies_, *target_);
+    scene_->draw(view, scene_view, snapshot, settings, bodies_, *target_);
     if (interface != nullptr) interface_->draw(*interface);
     return {};
   }
@@ -96,13 +122,16 @@ class Renderer::Parts {
   }
 
  private:
-  Status fit_target(int samples) {
-    const int width = context_->width_px(), height = context_->height_px();
-    const bool fits = target_ && target_->width_px() == width && target_->height_px() == height &&
-                      target_->samples() == samples;
+  Status fit_target(const ViewSettings& settings) {
+    const PixelSize frame{context_->width_px(), context_->height_px()};
+    const PixelSize scene = choose_scene_size(frame, settings);
+    const bool fits = target_ && target_->width_px() == frame.width_px &&
+                      target_->height_px() == frame.height_px && target_->scene_size() == scene &&
+                      target_->samples() == settings.samples;
     if (fits) return {};
     target_.reset();
-    auto target = RenderTarget::make(gl_, width, height, samples);
+    auto target =
+        RenderTarget::make(gl_, frame, scene, settings.samples, context_->has_window() ? GL_BGRA : GL_RGBA);
     if (!target) return target.error();
     target_.emplace(std::move(target).value());
     return {};

@@ -9,8 +9,8 @@
 // The picture depends only on snapshot, settings and interface: the same input gives the same pixels for any
 // number of drawing threads. There are two exceptions, which retain something from earlier frames. With
 // ViewSettings::keep_level the tessellation may be slightly finer or coarser, and the edge of the fixed part
-// is that of an earlier shape. A deforming mesh keeps the sharp edges of its first shape, and its groups of
-// triangles that hide light from each other.
+// and the visibility of some vertices are those of earlier shapes. A deforming mesh keeps the sharp edges of
+// its first shape, and its groups of triangles that hide light from each other.
 #pragma once
 
 #include <imgui.h>

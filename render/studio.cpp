@@ -41,6 +41,8 @@ std::span<const Studio> studios() {
        .horizon = 0.03f,
        .floor = 0.12f,
        .strip = 1.6f,
+       .ground_line = {150, 156, 164},
+       .scale_bar = {196, 200, 206},
        .top_srgb = {24.0f, 26.0f, 30.0f},
        .bottom_srgb = {62.0f, 64.0f, 68.0f}},
   }};

@@ -6,6 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "render/colour.h"
+
 namespace spoonbill {
 
 // Colours are linear, 1 for white paper in full light, unless stated otherwise.
@@ -18,6 +20,7 @@ struct Studio {
   Eigen::Vector3f floor_colour;  // and below it
   // Brightness of mirrored surroundings: above, at the horizon, below, and of the strip light at the side.
   float ceiling = 1.0f, horizon = 0.2f, floor = 0.6f, strip = 0.5f;
+  Colour ground_line{70, 78, 88}, scale_bar{48, 54, 62};  // drawn on the ground
   Eigen::Vector3f top_srgb, bottom_srgb;  // backdrop at the upper and lower edge of the picture, 0 to 255
 };
 

@@ -16,15 +16,15 @@ constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
 // A frame has spare capacity if its time is at most this fraction of the available time. Entry i is for the
-// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each; the others
-// multiply it by less.
-constexpr std::array<double, 6> spare_fraction = {0.0, 0.65, 0.65, 0.45, 0.65, 0.65};
+// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each, and the
+// full resolution by up to 3; the others multiply it by less.
+constexpr std::array<double, 6> spare_fraction = {0.0, 0.65, 0.65, 0.45, 0.65, 0.35};
 
 constexpr int minimum_patience_frames = 120;   // two seconds; the initial value
 constexpr int maximum_patience_frames = 7200;  // two minutes
 constexpr int trial_frames = 120;              // a quality sustained for this long is accepted
 
-constexpr double coarse_detail = 0.5;
+constexpr double coarse_detail = 0.5, coarse_resolution = 0.5;
 
 FrameQuality neighbour(FrameQuality quality, int step) {
   return static_cast<FrameQuality>(static_cast<int>(quality) + step);
@@ -42,6 +42,7 @@ double ground_below(const Box& model) {
 }
 
 void FrameBudget::add_frame(double took_s) {
+  if (is_fixed_) return;
   ++frames_since_change_;
   if (frames_since_change_ == trial_frames && on_trial_) {
     on_trial_ = false;
@@ -81,7 +82,9 @@ void FrameBudget::apply(ViewSettings& settings) const {
   if (quality_ >= FrameQuality::no_reflections) settings.reflections = false;
   if (quality_ >= FrameQuality::no_samples) settings.samples = 0;
   if (quality_ >= FrameQuality::no_shadow) settings.shadow = false;
-  if (quality_ >= FrameQuality::coarse) settings.detail = std::min(settings.detail, coarse_detail);
+  if (quality_ < FrameQuality::coarse) return;
+  settings.detail = std::min(settings.detail, coarse_detail);
+  settings.resolution = std::min(settings.resolution, coarse_resolution);
 }
 
 std::string FrameBudget::text() const {
@@ -94,7 +97,7 @@ std::string FrameBudget::text() const {
     list += (i == 0 ? "" : i + 1 == count ? " and " : ", ") + std::string(omitted[i]);
   }
   return "drawing without " + list +
-         (quality_ != FrameQuality::coarse || late_frames_ == 0
+         (!is_fixed_ && (quality_ != FrameQuality::coarse || late_frames_ == 0)
               ? " to hold " + std::to_string(std::lround(1.0 / frame_s_)) + " Hz"
               : "");
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/base/geometry.h"
@@ -53,7 +54,10 @@ struct ViewSettings {
   bool reflections = true;  // lets shiny bodies mirror the studio
   int samples = 4;          // samples per pixel, 0 or 4
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
-  bool keep_level = true;   // lets the tessellation stay slightly too fine or too coarse, to avoid flicker
+  // Pixels of bodies and overlays for each pixel of the frame, in each direction; 0.5 to 1. Only without
+  // samples.
+  double resolution = 1.0;
+  bool keep_level = true;   // see MeshChoice::keeps_level
   double ground_y_m = 0.0;  // height of the ground, see ground_below()
   // Leaves out the background. The pixels then have premultiplied alpha; see make_alpha_straight().
   bool is_transparent = false;
@@ -66,7 +70,8 @@ double interface_scale_for(int height_px);
 // Returns the height of the ground on which a model stands: that of its lowest point.
 double ground_below(const Box& model);
 
-// Drawing qualities, from best to worst: each leaves out one thing more.
+// Drawing qualities, from best to worst: each leaves out one thing more. `coarse` has half the detail and
+// half the resolution.
 enum class FrameQuality { full, no_occlusion, no_reflections, no_samples, no_shadow, coarse };
 
 // Reduces the drawing quality to hold the frame rate. Its decisions depend only on the times that it
@@ -78,8 +83,9 @@ enum class FrameQuality { full, no_occlusion, no_reflections, no_samples, no_sha
 //   budget.add_frame(seconds_it_took);       // after each frame: drawing and presenting, without waiting
 class FrameBudget {
  public:
-  // `frame_s` is the time available for a frame, above 0.
-  explicit FrameBudget(double frame_s = 1.0 / 60.0) : frame_s_(frame_s) {}
+  // `frame_s` is the time available for a frame, above 0. With a fixed quality, late frames do not lower it.
+  explicit FrameBudget(double frame_s = 1.0 / 60.0, std::optional<FrameQuality> fixed = {})
+      : frame_s_(frame_s), is_fixed_(fixed.has_value()), quality_(fixed.value_or(FrameQuality::full)) {}
 
   // Records the time of a frame drawn at quality(). Consecutive late frames, or more than one late frame in
   // three, lower the quality. A long time with spare capacity raises it. A single late frame changes nothing,
@@ -100,7 +106,8 @@ class FrameBudget {
   void consider_raising(double took_s);
 
   double frame_s_;
-  FrameQuality quality_ = FrameQuality::full;
+  bool is_fixed_;
+  FrameQuality quality_;
   int late_frames_ = 0;          // weighted count of recent late frames
   int spare_frames_ = 0;         // count of frames with spare capacity
   int frames_since_change_ = 0;  // frames since the quality changed

@@ -58,6 +58,20 @@ CommandEntry add_edit(OptionSet root) {
       .limit(Range<double>{1.0, 4.0});
   parser
       .add_parsed(
+          "--quality",
+          [settings](const std::string& text) -> Status {
+            const auto quality =
+                parse_choice<std::optional<FrameQuality>>(text, {{"automatic", std::nullopt},
+                                                                 {"full", FrameQuality::full},
+                                                                 {"lowest", FrameQuality::coarse}});
+            if (!quality) return quality.error();
+            settings->quality = quality.value();
+            return {};
+          },
+          "Quality of the frames: full, lowest, or automatic (default), which lowers it to hold 60 Hz")
+      .show_as("NAME");
+  parser
+      .add_parsed(
           "--navigation",
           [settings](const std::string& text) -> Status {
             const auto preset = find_navigation(text);

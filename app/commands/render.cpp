@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -14,6 +15,9 @@
 #include "app/frames/model_picture.h"
 #include "app/frames/replay_pictures.h"
 #include "app/report/fact_sheet.h"
+#include "app/report/quantity_text.h"
+#include "engine/exchange/file_format.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
@@ -27,8 +31,9 @@ struct RenderOptions {
   std::filesystem::path video;
   Extent size{1280, 720};
   PictureSettings picture;
-  std::string material;  // its name; empty to keep those of the models
-  int turntable = 0;     // number of pictures of the video
+  std::string material;            // its name; empty to keep those of the models
+  std::optional<LengthUnit> unit;  // of the numbers in meshes and clouds
+  int turntable = 0;               // number of pictures of the video
   OutputOptions how;
   bool json = false;
 };
@@ -38,7 +43,7 @@ Result<ShownModel> read_models(const RenderOptions& options, Console& console) {
   std::vector<ShownModel> models;
   for (const std::filesystem::path& file : options.models) {
     ProgressBar bar(console, "Reading", false);
-    auto model = read_shown_model(file, Progress([&](double fraction) {
+    auto model = read_shown_model(file, options.unit, Progress([&](double fraction) {
                                     bar.show(fraction);
                                     return !interrupt.requested();
                                   }));
@@ -47,8 +52,8 @@ Result<ShownModel> read_models(const RenderOptions& options, Console& console) {
     models.push_back(std::move(model).value());
   }
   ShownModel joined = join_models(models);
-  if (options.material.empty()) return joined;
-  show_material(options.material, joined);
+  if (!options.material.empty()) show_material(options.material, joined);
+  if (options.picture.overlays.tool) rest_tool_on_top(joined);
   return joined;
 }
 
@@ -103,6 +108,8 @@ Status render(RenderOptions options, Console& console) {
   facts.add("Picture", options.out.string(), "out", options.out.string());
   const std::size_t bodies = model->snapshot.bodies.size();
   facts.add("Bodies", std::to_string(bodies), "bodies", bodies);
+  const Vector3 size_m = drawn_bounds(model->snapshot).extent();
+  facts.add("Size", size_text(size_m), "size_m", components_json(size_m));
   for (const std::string& note : model->notes) facts.add("Note", note, "", nullptr);
   facts.add("", "", "notes", model->notes);
   if (options.turntable > 0) {
@@ -150,8 +157,14 @@ CommandEntry add_render(OptionSet root) {
   add_parsed_option(
       parser, "--overlays", "LIST", parse_picture_overlays,
       [options](const Overlays& overlays) { options->picture.overlays = overlays; },
-      "What is shown beside the model: grid, scale, legend, net, planes, separated by commas; default: "
-      "nothing");
+      "What is shown beside the model, separated by commas: grid, scale, legend, net, planes, and tool, "
+      "which is "
+      "put on the highest point; default: nothing");
+  add_parsed_option(
+      parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
+      [options](const LengthUnit& unit) { options->unit = unit; },
+      "Unit of the numbers in meshes and clouds: mm, cm, m or in; default: m for .ply and .pcd, mm for "
+      "others");
   const CommandOption transparent =
       parser.add_flag("--transparent", options->picture.is_transparent, "Leave out the background");
   const CommandOption video =
@@ -167,6 +180,14 @@ CommandEntry add_render(OptionSet root) {
   add_force_option(parser, options->how);
   add_json_option(parser, options->json);
   parser.set_final_check([options]() -> Status {
+    const auto has_no_unit = [](const std::filesystem::path& model) {
+      const FileFormat format = format_from_name(model);
+      return is_mesh(format) || is_cloud(format);
+    };
+    if (options->unit && std::none_of(options->models.begin(), options->models.end(), has_no_unit)) {
+      return Error{ErrorCode::inconsistent,
+                   "--unit: no model is a mesh or a cloud; the others have their own unit", "--unit"};
+    }
     const std::string ending = options->out.extension().string();
     if (ending == ".png" || ending == ".PNG") return {};
     return Error{ErrorCode::unsupported, "--out: '" + options->out.string() + "' must end in .png", "--out"};

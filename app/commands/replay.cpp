@@ -181,7 +181,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   Snapshot start;
   write_snapshot(replay.session, start);
   Framing framing = find_framing(replay.session.simulation.scene(), start);
-  const bool has_ground = framing.ground_y_m || replay.session.view.ground_y_m;
+  const bool has_ground = framing.scene_ground_y_m || replay.session.view.ground_y_m;
   if (request.folder || !has_ground) {
     const ReplayPlan plan = plan_replay(replay, request, interrupt, framing.lowest_y_m);
     framing.lowest_y_m = plan.lowest_y_m;

@@ -106,6 +106,7 @@ void FrameLog::add(const ShownFrame& shown) {
                      {"in_stroke", shown.in_stroke},
                      {"can_undo", shown.can_undo},
                      {"can_redo", shown.can_redo},
+                     {"last_frame_ms", shown.last_frame_ms},
                      {"pressing", shown.pressing},
                      {"prompt", shown.prompt},
                      {"typed", shown.typed},

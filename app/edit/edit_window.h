@@ -72,9 +72,10 @@ struct ShownFrame {
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;  // true during a press of the left button that began on the picture
-  std::string prompt;     // prompt that is open: "file", "shape", "question", or empty
-  std::string typed;      // text of the file prompt
+  double last_frame_ms = 0.0;  // time that the frame before took, without the wait for the next
+  bool pressing = false;       // true during a press of the left button that began on the picture
+  std::string prompt;          // prompt that is open: "file", "shape", "question", or empty
+  std::string typed;           // text of the file prompt
   std::vector<std::array<double, 2>> answers_px;  // button centres of the open question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;

@@ -153,7 +153,8 @@ Editor::Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<
       document_(std::move(document)),
       presets_(read_presets()),
       hand_(Vector3::Zero()),
-      inputs_(std::move(mailbox), start, hand_) {}
+      inputs_(std::move(mailbox), start, hand_),
+      budget_(std::chrono::duration<double>(frame_time).count(), settings.quality) {}
 
 Status Editor::run() {
   try {
@@ -175,7 +176,8 @@ Status Editor::run_frames() {
     const double seconds = std::chrono::duration<double>(now - last).count();
     last = now;
     if (Status drawn = frame(seconds); !drawn) return drawn;
-    budget_.add_frame(std::chrono::duration<double>(Clock::now() - now).count());
+    last_frame_s_ = std::chrono::duration<double>(Clock::now() - now).count();
+    budget_.add_frame(last_frame_s_);
     std::this_thread::sleep_until(now + frame_time);
   }
   const auto kept = document_.discard_changes(*live_);
@@ -239,6 +241,7 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
   shown.can_undo = frame.facts.can_undo;
   shown.can_redo = frame.facts.can_redo;
   shown.pressing = hand_.is_pressing();
+  shown.last_frame_ms = 1e3 * last_frame_s_;
   shown.prompt = file_prompt_.is_open()    ? "file"
                  : shape_prompt_.is_open() ? "shape"
                  : is_question_open()      ? "question"
@@ -294,11 +297,15 @@ void Editor::handle_completed_jobs(const LiveFrame& frame) {
   }
 }
 
+Framing Editor::framing() const {
+  return {body_bounds_, level_height_m(live_->last_frame().facts.ground), ground_below(body_bounds_)};
+}
+
 ViewSettings Editor::view_settings(double top_px) const {
   const int width = window_.width_px();
   const int height = window_.height_px();
   const Rectangle panel = panel_rectangle(width, height, window_.scale(), top_px);
-  return make_view_settings(view_, body_bounds_, width, height, panel, window_.scale());
+  return make_view_settings(view_, framing(), width, height, panel, window_.scale());
 }
 
 Status Editor::lay_out(const LiveFrame& frame, double seconds) {
@@ -317,7 +324,7 @@ Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   drawn_ = shown_;
   if (screenshot_ == Screenshot::scene) {
     drawn_ =
-        make_view_settings(view_, body_bounds_, window_.width_px(), window_.height_px(), {}, window_.scale());
+        make_view_settings(view_, framing(), window_.width_px(), window_.height_px(), {}, window_.scale());
   }
   lay_out_labels(frame, drawn_);
   lay_out_panel(frame);

@@ -29,8 +29,9 @@ struct EditSettings {
   int height = 720;
   std::optional<double> scale;
   NavigationPreset navigation = NavigationPreset::rhino;
-  std::filesystem::path recording;  // file that records the session from its start; empty for none
-  std::filesystem::path log;        // file of the log of the frames shown; empty for none
+  std::filesystem::path recording;      // file that records the session from its start; empty for none
+  std::filesystem::path log;            // file of the log of the frames shown; empty for none
+  std::optional<FrameQuality> quality;  // of all frames; default: chosen to hold 60 frames per second
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
 };
@@ -72,6 +73,7 @@ class Editor {
   void lay_out_labels(const LiveFrame& frame, ViewSettings& view);
   void lay_out_panel(const LiveFrame& frame);
   void lay_out_prompts();
+  Framing framing() const;
   ViewSettings view_settings(double top_px) const;
 
   // The following functions handle the user's input.
@@ -129,6 +131,7 @@ class Editor {
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
   bool stroke_began_here_ = false;     // true if the left button was pressed on the picture
   FrameBudget budget_;
+  double last_frame_s_ = 0.0;  // time that the last frame took, without the wait for the next
   LivePlots plots_;
   MessageLine messages_;
   std::vector<float> forces_n_;

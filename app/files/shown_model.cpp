@@ -13,9 +13,13 @@
 #include "haptic/recording.h"
 #include "haptic/recording_lines.h"
 #include "haptic/script.h"
+#include "render/tessellation/tessellated_surface.h"
 
 namespace spoonbill {
 namespace {
+
+// Smallest size of a model that can be shown: the diagonal of the box around it.
+constexpr double smallest_shown_m = 1e-6;
 
 Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& file) {
   auto snapshot = make_scene_snapshot(scene);
@@ -73,8 +77,10 @@ Result<ShownModel> show_cad(const std::filesystem::path& file, const Progress& p
   return shown;
 }
 
-Result<ShownModel> show_scan(const std::filesystem::path& file) {
-  auto read = read_scan_file(file);
+Result<ShownModel> show_scan(const std::filesystem::path& file, const std::optional<LengthUnit>& unit) {
+  MeshReading reading;
+  reading.unit = unit;
+  auto read = read_scan_file(file, reading);
   if (!read) return read.error();
   Scan& scan = read->scan;
   TriangleMesh mesh = scan.triangles.empty()
@@ -84,23 +90,31 @@ Result<ShownModel> show_scan(const std::filesystem::path& file) {
     return at[0] == at[1] || at[1] == at[2] || at[2] == at[0];
   };
   std::erase_if(mesh.triangles, is_line);
-  ShownModel shown;
-  if (mesh.triangles.empty()) return shown;
-  MeshSnapshot& drawn = shown.snapshot.bodies.emplace_back().mesh;
+  auto shown = show_scene({}, file);  // the tool with which a new document begins
+  if (!shown || mesh.triangles.empty()) return shown;
+  MeshSnapshot& drawn = shown->snapshot.bodies.emplace_back().mesh;
   drawn = make_mesh_snapshot(mesh);
   drawn.is_closed = false;
+  if (!unit)
+    shown->notes.push_back(file.filename().string() + ": its numbers are taken as " +
+                           std::string(read->unit.name));
   return shown;
 }
 
 }  // namespace
 
-Result<ShownModel> read_shown_model(const std::filesystem::path& file, const Progress& progress) {
+Result<ShownModel> read_shown_model(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
+                                    const Progress& progress) {
   const FileFormat format = format_from_name(file);
   Result<ShownModel> shown = is_cad(format)                        ? show_cad(file, progress)
-                             : is_mesh(format) || is_cloud(format) ? show_scan(file)
+                             : is_mesh(format) || is_cloud(format) ? show_scan(file, unit)
                                                                    : show_native(file);
   if (shown && shown->snapshot.bodies.empty())
     return Error{ErrorCode::missing, file.string() + ": has nothing to draw"};
+  if (shown && !(drawn_bounds(shown->snapshot).size() >= smallest_shown_m))
+    return Error{ErrorCode::out_of_range, file.string() +
+                                              ": is smaller than 0.001 mm; scale it, or give the unit "
+                                              "of a mesh or cloud with --unit"};
   return shown;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/files/length_unit.h"
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
@@ -20,12 +21,14 @@ inline constexpr std::size_t shown_point_limit = 60'000;
 struct ShownModel {
   Snapshot snapshot;               // bodies at rest, without lattices
   std::optional<Ground> ground;    // the ground on which the bodies of a document stand
-  std::vector<std::string> notes;  // what the picture does not show, one line each
+  std::vector<std::string> notes;  // what the picture does not show, and units taken; one line each
 };
 
 // Reads a document, the model of a recording or of a script, the faces of a CAD file, a mesh or a cloud of
-// points. A cloud is shown as discs. Errors name the file: those of the readers, and a file without anything
-// to show.
-Result<ShownModel> read_shown_model(const std::filesystem::path& file, const Progress& progress);
+// points. A cloud is shown as discs. `unit` is that of the numbers in meshes and clouds; default: metres for
+// PLY and PCD, millimetres for others. Errors name the file: those of the readers, a file without
+// anything to show, and a model smaller than 0.001 mm.
+Result<ShownModel> read_shown_model(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
+                                    const Progress& progress);
 
 }  // namespace spoonbill

@@ -37,17 +37,14 @@ Box framed_box(const Snapshot& start) {
 }
 
 Framing find_framing(const Scene& scene, const Snapshot& start) {
-  Framing framing{framed_box(start), std::nullopt, ground_below(drawn_bounds(start))};
-  if (scene.ground && is_level(*scene.ground)) framing.ground_y_m = scene.ground->point_m.y();
-  return framing;
+  return {framed_box(start), level_height_m(scene.ground), ground_below(drawn_bounds(start))};
 }
 
 ViewSettings frame_view(const ViewChoice& choice, const Framing& framing, const PictureSize& size) {
   const int width_px = size.width_px, height_px = size.height_px;
   const Rectangle panel_px = size.has_panel ? picture_panel_rectangle(width_px, height_px) : Rectangle{};
   ViewSettings view =
-      make_view_settings(choice, framing.box, width_px, height_px, panel_px, interface_scale_for(height_px));
-  view.ground_y_m = framing.ground_y_m.value_or(choice.ground_y_m.value_or(framing.lowest_y_m));
+      make_view_settings(choice, framing, width_px, height_px, panel_px, interface_scale_for(height_px));
   view.keep_level = false;
   return view;
 }

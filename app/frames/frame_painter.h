@@ -23,14 +23,6 @@ namespace spoonbill {
 // Returns the box around all control nets and meshes of a snapshot.
 Box framed_box(const Snapshot& start);
 
-// The camera and the ground that all frames of a replay have in common.
-struct Framing {
-  Box box;  // what the camera shows where the view leaves this open: the bodies at the start
-  // Height of the level ground on which the bodies stand; empty if the scene has none.
-  std::optional<double> ground_y_m;
-  double lowest_y_m = 0.0;  // lowest point of the bodies in all frames, where the ground is drawn otherwise
-};
-
 // Returns the framing of a scene whose bodies do not move below where they are in `start`.
 Framing find_framing(const Scene& scene, const Snapshot& start);
 

@@ -9,10 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "app/frames/frame_painter.h"
+#include "app/session/view_choice.h"
 #include "engine/base/text.h"
 #include "render/camera.h"
 #include "render/tessellation/tessellated_surface.h"
+#include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 namespace {
@@ -33,12 +34,13 @@ constexpr std::array<std::pair<std::string_view, StandardView>, 7> view_names = 
     {"bottom", StandardView::bottom},
 }};
 
-constexpr std::array<std::pair<std::string_view, bool Overlays::*>, 5> overlay_names = {{
+constexpr std::array<std::pair<std::string_view, bool Overlays::*>, 6> overlay_names = {{
     {"grid", &Overlays::ground_grid},
     {"scale", &Overlays::scale_bar},
     {"legend", &Overlays::legend},
     {"net", &Overlays::control_net},
     {"planes", &Overlays::fixing_planes},
+    {"tool", &Overlays::tool},
 }};
 
 void append_name(std::string_view name, std::string& list) {
@@ -148,6 +150,7 @@ ShownModel join_models(std::span<const ShownModel> models) {
     append(model.notes, joined.notes);
     if (!joined.ground) joined.ground = model.ground;
   }
+  if (!models.empty()) joined.snapshot.tool = models.front().snapshot.tool;
   return joined;
 }
 
@@ -162,13 +165,25 @@ constexpr std::size_t fitted_point_count = 200'000;
 
 // The part of a model that its pictures show.
 struct Subject {
-  // Vertices of the drawn triangles: all of them, or every n-th corner of a large body. A trimmed face does
-  // not reach to its control points.
+  // Vertices of the drawn triangles: all of them, or every n-th corner of a large body; corners of the box
+  // around the tool if it is shown. A trimmed face does not reach to its control points.
   std::vector<Vector3> points_m;
-  Box box;
+  Box box;  // around the bodies
 };
 
-Subject find_subject(const Snapshot& snapshot) {
+// Returns the box around the tool at the origin.
+Box find_tool_box(const ToolSnapshot& tool) {
+  if (const ToolBody* const body = rigid_body(tool)) return bounding_box(body->solid);
+  const double radius_m = tool.kind == ToolKind::sphere ? tool.radius_m : 0.0;
+  return {Vector3::Constant(-radius_m), Vector3::Constant(radius_m)};
+}
+
+void append_tool_corners(const ToolSnapshot& tool, std::vector<Vector3>& points_m) {
+  const Box box = find_tool_box(tool);
+  for (int k = 0; k < 8; ++k) points_m.push_back(tool.proxy.position_m + box.corner(k));
+}
+
+Subject find_subject(const Snapshot& snapshot, bool has_tool) {
   constexpr int pieces = 4;
   Subject subject;
   for (const BodySnapshot& body : snapshot.bodies) {
@@ -187,6 +202,7 @@ Subject find_subject(const Snapshot& snapshot) {
     }
     if (const Box one = drawn.bounds(); !one.is_empty()) subject.box.join(one);
   }
+  if (has_tool) append_tool_corners(snapshot.tool, subject.points_m);
   return subject;
 }
 
@@ -202,19 +218,29 @@ ViewSettings make_view_of(const Subject& subject, const ShownModel& model, const
   view.studio_turn_rad = picture.studio.turn_rad;
   view.keep_level = false;
   view.is_transparent = picture.is_transparent;
-  view.ground_y_m =
-      model.ground && is_level(*model.ground) ? model.ground->point_m.y() : ground_below(subject.box);
+  view.ground_y_m = choose_ground_y_m(level_height_m(model.ground), std::nullopt, ground_below(subject.box));
   return view;
 }
 
 }  // namespace
 
+void rest_tool_on_top(ShownModel& model) {
+  const std::vector<Vector3> points_m = find_subject(model.snapshot, false).points_m;
+  if (points_m.empty()) return;
+  const auto is_lower = [](const Vector3& a, const Vector3& b) { return a.y() < b.y(); };
+  ToolSnapshot& tool = model.snapshot.tool;
+  const Box box = find_tool_box(tool);
+  const Vector3 foot(box.centre().x(), box.low.y(), box.centre().z());
+  tool.device.position_m = *std::max_element(points_m.begin(), points_m.end(), is_lower) - foot;
+  tool.proxy = tool.device;
+}
+
 ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& picture) {
-  return make_view_of(find_subject(model.snapshot), model, picture);
+  return make_view_of(find_subject(model.snapshot, picture.overlays.tool), model, picture);
 }
 
 std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureSettings& picture, int count) {
-  const Subject subject = find_subject(model.snapshot);
+  const Subject subject = find_subject(model.snapshot, picture.overlays.tool);
   std::vector<ViewSettings> views;
   PictureSettings turned = picture;
   double distance_m = 0.0;
@@ -223,8 +249,10 @@ std::vector<ViewSettings> make_turntable(const ShownModel& model, const PictureS
     views.push_back(make_view_of(subject, model, turned));
     distance_m = std::max(distance_m, views.back().camera.distance_m);
   }
+  Box framed;
+  for (const Vector3& point_m : subject.points_m) framed.include(point_m);
   for (ViewSettings& view : views) {
-    if (!subject.box.is_empty()) view.camera.target_m = subject.box.centre();
+    if (!framed.is_empty()) view.camera.target_m = framed.centre();
     view.camera.distance_m = distance_m;
   }
   return views;

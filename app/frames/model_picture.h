@@ -43,11 +43,15 @@ Result<Overlays> parse_picture_overlays(std::string_view text);
 // Returns overlays that are all switched off.
 Overlays no_overlays();
 
-// Puts the bodies of several models into one, as they are. The ground is that of the first model with one.
+// Puts the bodies of several models into one, as they are. The ground is that of the first model with one,
+// the tool that of the first model.
 ShownModel join_models(std::span<const ShownModel> models);
 
 // Lets all bodies look like the material of this name.
 void show_material(const std::string& name, ShownModel& model);
+
+// Puts the tool onto the highest point of the model.
+void rest_tool_on_top(ShownModel& model);
 
 struct PictureSettings {
   ViewDirection direction = default_view_direction();

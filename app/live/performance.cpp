@@ -29,7 +29,8 @@ class Painting {
     auto painter = FramePainter::make(width_px, height_px);
     if (!painter) return painter.error();
     return Painting(std::move(painter).value(),
-                    Framing{framed_box(first.snapshot), {}, ground_below(drawn_bounds(first.snapshot))});
+                    Framing{framed_box(first.snapshot), level_height_m(first.facts.ground),
+                            ground_below(drawn_bounds(first.snapshot))});
   }
 
   Status paint(const LiveFrame& frame, const ViewChoice& choice) {

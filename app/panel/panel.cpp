@@ -24,7 +24,7 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
 
   model.tool = facts.tool;
   model.sculpting = facts.sculpting;
-  model.has_ground = facts.has_ground;
+  model.has_ground = facts.ground.has_value();
   model.material = facts.material;
   model.region_count = facts.region_count;
   model.mass_kg = facts.mass_kg;

@@ -288,7 +288,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
     facts.mass_kg += session.masses[b].mass_kg(scene.bodies[b].material.density_kg_per_m3);
   }
   facts.sculpting = scene.sculpting;
-  facts.has_ground = scene.ground.has_value();
+  facts.ground = scene.ground;
   facts.symmetry = scene.symmetry;
   facts.can_undo = session.history.can_undo();
   facts.can_redo = session.history.can_redo();

@@ -132,7 +132,7 @@ struct SessionFacts {
   double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;
-  bool has_ground = false;
+  std::optional<Ground> ground = {};
   bool can_undo = false;
   bool can_redo = false;
   bool in_stroke = false;

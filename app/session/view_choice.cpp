@@ -175,18 +175,23 @@ Status apply_view_command(const Json& command, const std::string& source, ViewCh
   return {};
 }
 
-ViewSettings make_view_settings(const ViewChoice& choice, const Box& body, int width_px, int height_px,
+double choose_ground_y_m(std::optional<double> scene_ground_y_m, std::optional<double> view_ground_y_m,
+                         double lowest_y_m) {
+  return scene_ground_y_m.value_or(view_ground_y_m.value_or(lowest_y_m));
+}
+
+ViewSettings make_view_settings(const ViewChoice& choice, const Framing& framing, int width_px, int height_px,
                                 const Rectangle& panel_px, double interface_scale) {
   ViewSettings settings;
   settings.camera = choice.camera;
   if (choice.shows_whole_body) {
-    settings.camera = frame(choice.camera, body, make_viewport(width_px, height_px, panel_px));
+    settings.camera = frame(choice.camera, framing.box, make_viewport(width_px, height_px, panel_px));
   }
   settings.panel_px = panel_px;
   settings.interface_scale = interface_scale;
   settings.overlays = choice.overlays;
   settings.see_through_body = choice.see_through_body;
-  settings.ground_y_m = choice.ground_y_m.value_or(ground_below(body));
+  settings.ground_y_m = choose_ground_y_m(framing.scene_ground_y_m, choice.ground_y_m, framing.lowest_y_m);
   return settings;
 }
 

@@ -6,8 +6,8 @@
 // A contact stage is "none", "hulls", "spheres", "triangles" or "contacts". The sphere level ranges from 0,
 // the coarsest, to 3. Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and
 // "target_mm": [x, y, z] with "distance_mm". Without target and distance the whole body is shown. Overlays
-// that are not named keep their state. The default ground is just below the body; set a height for bodies
-// that will be bent further down. Unknown fields and values out of range are errors that name the field.
+// that are not named keep their state. "ground_mm" is ignored where the scene has a level ground; the default
+// is the lowest point of the model. Unknown fields and values out of range are errors that name the field.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct ViewChoice {
   bool shows_whole_body = true;  // true if target and distance are computed from the body
   Overlays overlays;
   bool see_through_body = false;
-  std::optional<double> ground_y_m;  // height of the ground; default: just below the body
+  std::optional<double> ground_y_m;  // height of the ground; default: see choose_ground_y_m()
 };
 
 // Reads a view. `source` names the file in messages. An empty object gives the defaults.
@@ -48,9 +48,20 @@ bool is_view_command(const Json& command);
 // Applies a view command to the choice. An error leaves the choice unchanged.
 Status apply_view_command(const Json& command, const std::string& source, ViewChoice& choice);
 
-// Returns the settings for a frame of this size in which the model is beside a panel. `body` encloses the
-// model at the start, so that neither camera nor ground moves as the model deforms.
-ViewSettings make_view_settings(const ViewChoice& choice, const Box& body, int width_px, int height_px,
+// Camera and ground that all frames of a session have in common, so that neither moves as the model deforms.
+struct Framing {
+  Box box;  // shown by the camera unless the view has a target: the bodies at the start
+  std::optional<double> scene_ground_y_m;  // see level_height_m()
+  double lowest_y_m = 0.0;                 // lowest point of the bodies in all frames
+};
+
+// Returns the height at which the ground is drawn: that of the scene's ground if there is one, otherwise that
+// of the view, otherwise the lowest point of the model.
+double choose_ground_y_m(std::optional<double> scene_ground_y_m, std::optional<double> view_ground_y_m,
+                         double lowest_y_m);
+
+// Returns the settings for a frame of this size in which the model is beside a panel.
+ViewSettings make_view_settings(const ViewChoice& choice, const Framing& framing, int width_px, int height_px,
                                 const Rectangle& panel_px, double interface_scale);
 
 // A contact debug view that the user can choose; each sphere level is one choice.

@@ -79,9 +79,10 @@ struct Ground {
   double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
-// Returns whether a ground is level, within 0.8 degrees.
-inline bool is_level(const Ground& ground) {
-  return ground.normal.y() > 0.9999;
+// Returns the height of a ground that is level within 0.8 degrees; empty for another one and for none.
+inline std::optional<double> level_height_m(const std::optional<Ground>& ground) {
+  if (!ground || ground->normal.y() <= 0.9999) return std::nullopt;
+  return ground->point_m.y();
 }
 
 // Returns the displacement of a moving support at `time_s`, which must not be negative.

@@ -193,6 +193,11 @@ Result<Snapshot> make_scene_snapshot(const Scene& scene) {
     out.material.name = body.material.name;
   }
   for (const FixingPlane& plane : scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
+  const Tool& tool = scene.tool;
+  snapshot.tool.kind = tool.kind;
+  snapshot.tool.action = tool.action;
+  snapshot.tool.radius_m = tool.radius_m;
+  if (tool.body) snapshot.tool.body = std::make_shared<const ToolBody>(ToolBody{tool.body->solid, {}});
   return snapshot;
 }
 

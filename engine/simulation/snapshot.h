@@ -146,8 +146,9 @@ struct Snapshot {
 
 MeshSnapshot make_mesh_snapshot(const TriangleMesh& mesh);
 
-// Returns the bodies and fixing planes of a scene as they are, without a simulation and so without lattices.
-// Errors: those of make_trimmed_area(), with the name of the body.
+// Returns the bodies, fixing planes and tool of a scene as they are, without a simulation and so without
+// lattices. The tool is rigid and at the origin. Errors: those of make_trimmed_area(), with the name of the
+// body.
 Result<Snapshot> make_scene_snapshot(const Scene& scene);
 
 }  // namespace spoonbill

@@ -13,7 +13,7 @@ constexpr double cells_across_view = 22.0;
 constexpr int strong_every = 5;
 constexpr double fade_end_fraction = 0.85;    // grid radius / visible width at the target
 constexpr double fade_start_fraction = 0.30;  // radius at which fading starts / grid radius
-constexpr double strong_alpha = 88.0, thin_alpha = 46.0;
+constexpr std::uint8_t strong_alpha = 88, thin_alpha = 46;
 constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
@@ -30,7 +30,7 @@ std::uint8_t faded(double alpha, double distance_m, double radius_m) {
 
 // Appends a grid line along `axis`, at `offset_m` on the other horizontal axis. The line consists of pieces,
 // so that it can fade out.
-void append_faded_line(int axis, double offset_m, const Vector3& centre, double radius_m, double alpha,
+void append_faded_line(int axis, double offset_m, const Vector3& centre, double radius_m, Colour strongest,
                        std::vector<OverlayLine>& lines) {
   const int other = 2 - axis;
   const double across = offset_m - centre[other];
@@ -42,8 +42,8 @@ void append_faded_line(int axis, double offset_m, const Vector3& centre, double 
     return point;
   };
   const auto colour_at = [&](const Vector3& point) {
-    Colour colour = palette::ground_line;
-    colour.a = faded(alpha, (point - centre).norm(), radius_m);
+    Colour colour = strongest;
+    colour.a = faded(strongest.a, (point - centre).norm(), radius_m);
     return colour;
   };
   for (int piece = 0; piece < pieces_per_line; ++piece) {
@@ -65,7 +65,7 @@ double round_length_below(double length) {
   return decade;
 }
 
-void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m,
+void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m, Colour colour,
                         std::vector<OverlayLine>& lines) {
   const double width_m = viewport.free_px.width / pixels_per_metre(camera, viewport);
   const double cell_m = std::pow(10.0, std::round(std::log10(width_m / cells_across_view)));
@@ -76,8 +76,8 @@ void append_ground_grid(const Camera& camera, const Viewport& viewport, double g
     const auto first = static_cast<long>(std::ceil((centre[other] - radius_m) / cell_m));
     const auto last = static_cast<long>(std::floor((centre[other] + radius_m) / cell_m));
     for (long i = first; i <= last; ++i) {
-      const double alpha = i % strong_every == 0 ? strong_alpha : thin_alpha;
-      append_faded_line(axis, static_cast<double>(i) * cell_m, centre, radius_m, alpha, lines);
+      colour.a = i % strong_every == 0 ? strong_alpha : thin_alpha;
+      append_faded_line(axis, static_cast<double>(i) * cell_m, centre, radius_m, colour, lines);
     }
   }
 }
@@ -103,13 +103,14 @@ std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& v
   return ScaleBar{*centre - 0.5 * length_m * right, *centre + 0.5 * length_m * right, length_m};
 }
 
-void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<OverlayLine>& lines) {
+void append_scale_bar(const ScaleBar& bar, const Camera& camera, Colour colour,
+                      std::vector<OverlayLine>& lines) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   // The ticks at the ends of the bar are on the ground and perpendicular to the bar.
   const Vector3 across = axes.col(0).cross(Vector3::UnitY());
   const Vector3 tick = 0.045 * bar.length_m * across;
   const auto add = [&](const Vector3& a, const Vector3& b) {
-    lines.push_back({a.cast<float>(), b.cast<float>(), palette::scale_bar, palette::scale_bar, bar_width_px});
+    lines.push_back({a.cast<float>(), b.cast<float>(), colour, colour, bar_width_px});
   };
   add(bar.start_m, bar.end_m);
   add(bar.start_m - tick, bar.start_m + tick);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "render/overlay/overlays.h"
+#include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
 namespace {
@@ -133,7 +134,8 @@ std::vector<Label> make_legend(const Snapshot& snapshot, const ViewSettings& set
   };
   std::size_t fixed = 0, touched = 0;
   for (const BodySnapshot& body : snapshot.bodies) {
-    fixed += count_set(body.lattice.fixed);
+    const bool is_tool = is_soft(snapshot.tool) && &body == &snapshot.bodies.back();
+    if (!is_tool) fixed += count_set(body.lattice.fixed);
     touched += count_set(body.lattice.touched);
   }
   if (on.tool) {

@@ -162,8 +162,9 @@ Box bounding_box(const StageShapes& shapes);
 // Overlays of the ground, defined in ground_overlays.cpp: the grid and the scale bar.
 
 // Appends the lines of the ground grid, at multiples of a power of ten that suits the distance of the camera.
-// Every fifth line is stronger, and all lines fade out with the distance from the target of the camera.
-void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m,
+// Every fifth line is stronger, and all lines fade out with the distance from the target of the camera. The
+// alpha of the colour is ignored.
+void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m, Colour colour,
                         std::vector<OverlayLine>& lines);
 
 // A bar of a round length (1, 2 or 5 times a power of ten), parallel to the lower edge of the picture.
@@ -180,7 +181,8 @@ struct ScaleBar {
 std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& viewport, double ground_y_m);
 
 // Appends the bar with a tick at each end.
-void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<OverlayLine>& lines);
+void append_scale_bar(const ScaleBar& bar, const Camera& camera, Colour colour,
+                      std::vector<OverlayLine>& lines);
 
 // Returns the largest of 1, 2, 5 times a power of ten that does not exceed `length`, which must be positive.
 double round_length_below(double length);

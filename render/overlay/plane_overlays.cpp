@@ -7,7 +7,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr double fixing_overhang_fraction = 0.3;  // margin on each side / longer side of the rectangle
+// Margin on each side: a fraction of the longer side of the rectangle, but no more than one of the body's
+// size, so that the plane stays in the picture.
+constexpr double fixing_overhang_fraction = 0.3, most_overhang_of_body = 0.06;
 // Fixed nodes within this distance of a plane count as its section of the body, in mean edges along the
 // lattice's coarsest direction.
 constexpr double section_edges = 1.5;
@@ -52,9 +54,7 @@ Box2 compute_extent(const PlaneSnapshot& plane, const std::vector<BodySnapshot>&
   return extent.is_empty() ? compute_extent(plane, body, axes) : extent;
 }
 
-PlaneCorners make_corners(const PlaneSnapshot& plane, const PlaneAxes& axes, Box2 extent,
-                          double overhang_fraction) {
-  const double overhang = overhang_fraction * extent.extent().maxCoeff();
+PlaneCorners make_corners(const PlaneSnapshot& plane, const PlaneAxes& axes, Box2 extent, double overhang) {
   extent.low.array() -= overhang;
   extent.high.array() += overhang;
   const auto at = [&](double up, double across) {
@@ -76,7 +76,10 @@ constexpr double dot_start = 0.72, dot_end = 0.83;
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const Box& body) {
   const PlaneAxes axes = compute_axes(plane);
-  return make_corners(plane, axes, compute_extent(plane, bodies, body, axes), fixing_overhang_fraction);
+  const Box2 extent = compute_extent(plane, bodies, body, axes);
+  double overhang = fixing_overhang_fraction * extent.extent().maxCoeff();
+  if (!body.is_empty()) overhang = std::min(overhang, most_overhang_of_body * body.size());
+  return make_corners(plane, axes, extent, overhang);
 }
 
 Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane) {
@@ -102,7 +105,8 @@ void append_plane_border(const PlaneCorners& corners, const PlaneSnapshot& plane
 
 PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body) {
   const PlaneAxes axes = compute_axes(plane);
-  return make_corners(plane, axes, compute_extent(plane, body, axes), symmetry_overhang_fraction);
+  const Box2 extent = compute_extent(plane, body, axes);
+  return make_corners(plane, axes, extent, symmetry_overhang_fraction * extent.extent().maxCoeff());
 }
 
 void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines) {

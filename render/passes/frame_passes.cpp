@@ -23,8 +23,8 @@ std::uint8_t dithered(double value, int row) {
   return static_cast<std::uint8_t>(std::floor(value + threshold));
 }
 
-// Returns the gradient as RGBA8, bottom row first.
-std::vector<std::uint8_t> gradient(const Studio& studio, int width_px, int height_px) {
+// Returns the gradient as RGBA8 or BGRA8, bottom row first.
+std::vector<std::uint8_t> gradient(const Studio& studio, int width_px, int height_px, GLenum channels) {
   const Eigen::Vector3d top = studio.top_srgb.cast<double>(), bottom = studio.bottom_srgb.cast<double>();
   std::vector<std::uint8_t> texels;
   texels.reserve(4 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px));
@@ -32,9 +32,10 @@ std::vector<std::uint8_t> gradient(const Studio& studio, int width_px, int heigh
     const double t = (y + 0.5) / height_px;
     const double fraction = t * t * (3.0 - 2.0 * t);
     std::uint8_t colour[4] = {0, 0, 0, 255};
+    const bool is_reversed = channels == GL_BGRA;
     // The channels are dithered with different offsets; otherwise rows would be visible.
     for (int c = 0; c < 3; ++c) {
-      colour[c] = dithered(bottom[c] + fraction * (top[c] - bottom[c]), y + 3 * c);
+      colour[is_reversed ? 2 - c : c] = dithered(bottom[c] + fraction * (top[c] - bottom[c]), y + 3 * c);
     }
     for (int x = 0; x < width_px; ++x) texels.insert(texels.end(), colour, colour + 4);
   }
@@ -85,28 +86,36 @@ out vec4 result;
 void main() { result = texelFetch(scene, ivec2(gl_FragCoord.xy), 0); }
 )";
 
+constexpr const char* stretched_source = R"(
+uniform sampler2D scene;
+uniform vec2 texture_per_px;
+out vec4 result;
+void main() { result = texture(scene, gl_FragCoord.xy * texture_per_px); }
+)";
+
 }  // namespace
 
-void BackgroundPass::build(const Studio& studio, int width_px, int height_px) {
+void BackgroundPass::build(const Studio& studio, const RenderTarget& target) {
+  width_px_ = target.width_px();
+  height_px_ = target.height_px();
+  channels_ = target.channels();
   picture_ = make_texture(*gl_);
   gl_->BindTexture(GL_TEXTURE_2D, picture_.id());
-  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_px, height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                  gradient(studio, width_px, height_px).data());
+  gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_px_, height_px_, 0, channels_, GL_UNSIGNED_BYTE,
+                  gradient(studio, width_px_, height_px_, channels_).data());
   gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   framebuffer_ = make_framebuffer(*gl_);
   gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
   gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, picture_.id(), 0);
-  width_px_ = width_px;
-  height_px_ = height_px;
   top_srgb_ = studio.top_srgb;
   bottom_srgb_ = studio.bottom_srgb;
 }
 
 void BackgroundPass::draw(const Studio& studio, const RenderTarget& target) {
   const int width = target.width_px(), height = target.height_px();
-  const bool is_built = width == width_px_ && height == height_px_ && studio.top_srgb == top_srgb_ &&
-                        studio.bottom_srgb == bottom_srgb_;
-  if (!is_built) build(studio, width, height);
+  const bool is_built = width == width_px_ && height == height_px_ && target.channels() == channels_ &&
+                        studio.top_srgb == top_srgb_ && studio.bottom_srgb == bottom_srgb_;
+  if (!is_built) build(studio, target);
   target.begin_frame();
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
   gl_->BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
@@ -140,32 +149,48 @@ void GroundPass::draw_shadow(const FrameView& view, const ShadowPass& shadow) co
 }
 
 Result<ResolvePass> ResolvePass::make(const GlFunctions& gl) {
-  auto with = Program::make(gl, "resolve", whole_viewport_vertex_glsl, with_samples_source);
-  if (!with) return with.error();
-  auto without = Program::make(gl, "resolve", whole_viewport_vertex_glsl, without_samples_source);
-  if (!without) return without.error();
-  return ResolvePass(gl, std::move(with).value(), std::move(without).value());
+  std::vector<Program> programs;
+  for (const char* const source : {with_samples_source, without_samples_source, stretched_source}) {
+    auto program = Program::make(gl, "resolve", whole_viewport_vertex_glsl, source);
+    if (!program) return program.error();
+    programs.push_back(std::move(program).value());
+  }
+  return ResolvePass(gl, std::move(programs[0]), std::move(programs[1]), std::move(programs[2]));
 }
 
-ResolvePass::ResolvePass(const GlFunctions& gl, Program with_samples, Program without_samples)
+ResolvePass::ResolvePass(const GlFunctions& gl, Program with_samples, Program without_samples,
+                         Program stretched)
     : gl_(&gl),
       with_samples_(std::move(with_samples)),
       without_samples_(std::move(without_samples)),
+      stretched_(std::move(stretched)),
       vertex_array_(make_vertex_array(gl)) {}
 
 void ResolvePass::draw(const RenderTarget& target, std::span<const PixelArea> areas) const {
+  const PixelSize frame{target.width_px(), target.height_px()}, scene = target.scene_size();
   set_pipeline_state(*gl_, {Depth::off, Blend::premultiplied, Cull::off});
-  const Program& program = target.samples() > 0 ? with_samples_ : without_samples_;
+  const Program& program = target.samples() > 0 ? with_samples_
+                           : scene == frame     ? without_samples_
+                                                : stretched_;
   program.use();
   program.set("scene", 0);
+  if (&program == &stretched_) {
+    program.set("texture_per_px", Eigen::Vector2f(1.0f / static_cast<float>(frame.width_px),
+                                                  1.0f / static_cast<float>(frame.height_px)));
+  }
   gl_->ActiveTexture(GL_TEXTURE0);
   gl_->BindTexture(target.scene_texture_kind(), target.scene_texture());
   gl_->BindVertexArray(vertex_array_.id());
+  const auto in_frame = [](int at, int scene_px, int frame_px) { return at * frame_px / scene_px; };
   for (const PixelArea& area : areas) {
-    gl_->Viewport(area.x, area.y, area.width, area.height);
+    const int left = in_frame(area.x, scene.width_px, frame.width_px);
+    const int bottom = in_frame(area.y, scene.height_px, frame.height_px);
+    const int right = in_frame(area.x + area.width, scene.width_px, frame.width_px);
+    const int top = in_frame(area.y + area.height, scene.height_px, frame.height_px);
+    gl_->Viewport(left, bottom, right - left, top - bottom);
     gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   }
-  gl_->Viewport(0, 0, target.width_px(), target.height_px());
+  gl_->Viewport(0, 0, frame.width_px, frame.height_px);
 }
 
 }  // namespace spoonbill

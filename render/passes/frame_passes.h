@@ -21,12 +21,13 @@ class BackgroundPass {
   void draw(const Studio& studio, const RenderTarget& target);
 
  private:
-  void build(const Studio& studio, int width_px, int height_px);
+  void build(const Studio& studio, const RenderTarget& target);
 
   const GlFunctions* gl_;
   GlHandle picture_;
   GlHandle framebuffer_;
   int width_px_ = 0, height_px_ = 0;
+  GLenum channels_ = 0;
   Eigen::Vector3f top_srgb_, bottom_srgb_;
 };
 
@@ -48,7 +49,8 @@ class GroundPass {
   GlHandle vertex_array_;
 };
 
-// Averages the samples of the scene and blends the result over the frame.
+// Averages the samples of the scene, or stretches a scene with fewer pixels, and blends the result over the
+// frame.
 class ResolvePass {
  public:
   static Result<ResolvePass> make(const GlFunctions& gl);
@@ -57,10 +59,10 @@ class ResolvePass {
   void draw(const RenderTarget& target, std::span<const PixelArea> areas) const;
 
  private:
-  ResolvePass(const GlFunctions& gl, Program with_samples, Program without_samples);
+  ResolvePass(const GlFunctions& gl, Program with_samples, Program without_samples, Program stretched);
 
   const GlFunctions* gl_;
-  Program with_samples_, without_samples_;
+  Program with_samples_, without_samples_, stretched_;
   GlHandle vertex_array_;
 };
 

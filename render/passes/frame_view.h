@@ -26,6 +26,12 @@ struct FrameView {
   float pixel_depth_ratio = 0.0f;  // length in pixels of one metre at a depth of one metre
 };
 
+// Returns the largest distance by which things may be lifted toward the eye, so that they stay before it
+// however near it is.
+inline float lift_limit_m(const FrameView& view) {
+  return 0.1f * view.nearest_depth_m;
+}
+
 FrameView make_frame_view(const ViewSettings& settings, int width_px, int height_px);
 
 // Sets the uniforms that every scene shader may use: world_to_clip, eye, toward_key, ground_y.

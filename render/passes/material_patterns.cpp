@@ -76,36 +76,46 @@ float random_at(ivec3 cell) {
   return float((h ^ (h >> 13)) & 0xffffffu) / 16777215.0;
 }
 
-// Smooth noise from 0 to 1 that changes over a length of 1.
-float noise(vec3 p) {
+// Smooth noise from 0 to 1 that changes over a length of 1, and its gradient.
+vec4 noise_and_slope(vec3 p) {
   vec3 low = floor(p), f = p - low;
-  f = f * f * (3.0 - 2.0 * f);
+  vec3 t = f * f * (3.0 - 2.0 * f), dt = 6.0 * f * (1.0 - f);
   ivec3 c = ivec3(low);
   vec4 near = vec4(random_at(c), random_at(c + ivec3(1, 0, 0)), random_at(c + ivec3(0, 1, 0)), random_at(c + ivec3(1, 1, 0)));
   vec4 far = vec4(random_at(c + ivec3(0, 0, 1)), random_at(c + ivec3(1, 0, 1)), random_at(c + ivec3(0, 1, 1)),
                   random_at(c + ivec3(1, 1, 1)));
-  vec4 layer = mix(near, far, f.z);
-  vec2 row = mix(layer.xy, layer.zw, f.y);
-  return mix(row.x, row.y, f.x);
+  vec4 layer = mix(near, far, t.z), beyond = far - near;
+  vec2 row = mix(layer.xy, layer.zw, t.y), across = layer.zw - layer.xy, behind = mix(beyond.xy, beyond.zw, t.y);
+  return vec4(mix(row.x, row.y, t.x), dt.x * (row.y - row.x), dt.y * mix(across.x, across.y, t.x),
+              dt.z * mix(behind.x, behind.y, t.x));
 }
+
+float noise(vec3 p) { return noise_and_slope(p).x; }
 
 // Returns 1 for details of this size in mm that the picture resolves, 0 for those that would flicker.
 float resolved(vec3 p_mm, float size_mm) {
   return 1.0 - smoothstep(0.25, 0.6, sqrt(length(dFdx(p_mm)) * length(dFdy(p_mm))) / size_mm);
 }
 
+// Changes the skin as the pattern does.
+Skin coloured(Skin skin, vec3 p_mm);
+
+Skin patterned(Skin skin, vec3 position) {
+  return coloured(skin, 1e3 * (world_to_pattern * vec4(position, 1.0)).xyz);
+}
+
 )";
 
+// The reliefs of patterns are vec4: the height of the skin above its mean in mm, and its gradient.
 constexpr const char* relief_glsl = R"(
-// Height of the skin above its mean, in mm.
-float relief(vec3 p_mm);
+vec4 noise_relief(vec3 p_mm, vec3 per_mm, float height_mm) {
+  vec4 n = noise_and_slope(p_mm * per_mm);
+  return height_mm * vec4(n.x, n.yzw * per_mm);
+}
 
-// Tilts a normal as the relief does, whose slopes are found over `step` mm.
-vec3 embossed(vec3 p_mm, vec3 n, float step) {
-  float here = relief(p_mm);
-  vec3 slope = vec3(relief(p_mm + vec3(step, 0.0, 0.0)), relief(p_mm + vec3(0.0, step, 0.0)),
-                    relief(p_mm + vec3(0.0, 0.0, step))) - here;
-  slope = transpose(mat3(world_to_pattern)) * slope / step;
+// Tilts a normal as the relief does.
+vec3 embossed(vec4 relief, vec3 n) {
+  vec3 slope = transpose(mat3(world_to_pattern)) * relief.yzw;
   return normalize(n - slope + n * dot(n, slope));
 }
 )";
@@ -121,22 +131,18 @@ Skin patterned(Skin skin, vec3 position) { return skin; }
 
 // Modelling clay: smeared by fingers.
 constexpr const char* smeared_glsl = R"(
-float relief(vec3 p) {
-  return 0.16 * noise(p * vec3(0.22, 0.3, 0.3)) + 0.035 * noise(p * vec3(0.9, 1.1, 1.1)) * resolved(p, 0.9);
-}
-
-Skin patterned(Skin skin, vec3 position) {
-  vec3 p = 1e3 * (world_to_pattern * vec4(position, 1.0)).xyz;
-  skin.base *= 0.92 + 0.9 * relief(p);
-  skin.normal = embossed(p, skin.normal, 0.3);
+Skin coloured(Skin skin, vec3 p) {
+  vec4 relief = noise_relief(p, vec3(0.22, 0.3, 0.3), 0.16) +
+                noise_relief(p, vec3(0.9, 1.1, 1.1), 0.035 * resolved(p, 0.9));
+  skin.base *= 0.92 + 0.9 * relief.x;
+  skin.normal = embossed(relief, skin.normal);
   return skin;
 }
 )";
 
 // Beech: faint rings around the trunk, and the short dark flecks of its rays.
 constexpr const char* grain_glsl = R"(
-Skin patterned(Skin skin, vec3 position) {
-  vec3 p = 1e3 * (world_to_pattern * vec4(position, 1.0)).xyz;
+Skin coloured(Skin skin, vec3 p) {
   float sway = 3.0 * noise(p * vec3(0.018, 0.07, 0.07)) + 0.5 * noise(p * vec3(0.06, 0.3, 0.3));
   float trunk = length(vec2(p.y + 26.0, 0.55 * p.z + 14.0)) + sway;
   float ring = fract(trunk / 2.4);
@@ -151,40 +157,39 @@ Skin patterned(Skin skin, vec3 position) {
 
 // Foam: round open cells, one in each cube of a grid, smaller or larger by chance.
 constexpr const char* pores_glsl = R"(
-float relief(vec3 p) {
-  vec3 q = p / 1.1;
+Skin coloured(Skin skin, vec3 p) {
+  const float cube_mm = 1.1, depth_mm = 0.35;
+  vec3 q = p / cube_mm;
   ivec3 base = ivec3(floor(q - 0.5));
   float deepest = 0.0;
+  vec3 slope = vec3(0.0);
   for (int k = 0; k < 8; ++k) {
     ivec3 cube = base + ivec3(k & 1, (k >> 1) & 1, k >> 2);
     float chance = random_at(cube);
     vec3 centre = vec3(cube) + 0.5 + 0.5 * (vec3(chance, fract(7.0 * chance), fract(31.0 * chance)) - 0.5);
-    deepest = max(deepest, 1.0 - smoothstep(0.16, 0.24 + 0.3 * fract(3.0 * chance), length(q - centre)));
+    float width = 0.08 + 0.3 * fract(3.0 * chance), far = max(length(q - centre), 1e-6);
+    float t = clamp((far - 0.16) / width, 0.0, 1.0);
+    float depth = 1.0 - t * t * (3.0 - 2.0 * t);
+    if (depth > deepest) {
+      deepest = depth;
+      slope = 6.0 * t * (1.0 - t) / (width * far) * (q - centre);
+    }
   }
-  return -0.35 * deepest * resolved(p, 1.1);
-}
-
-Skin patterned(Skin skin, vec3 position) {
-  vec3 p = 1e3 * (world_to_pattern * vec4(position, 1.0)).xyz;
-  float pore = relief(p) / -0.35;
+  float seen = resolved(p, cube_mm), pore = deepest * seen;
   skin.base *= 1.0 - 0.45 * pore;
   skin.visible *= 1.0 - 0.6 * pore;
-  skin.normal = embossed(p, skin.normal, 0.12);
+  skin.normal = embossed(depth_mm * seen * vec4(-deepest, slope / cube_mm), skin.normal);
   return skin;
 }
 )";
 
 // Brushed metal: fine marks along the body.
 constexpr const char* brushed_glsl = R"(
-float relief(vec3 p) {
-  return 0.045 * noise(p * vec3(0.05, 0.9, 0.9)) * resolved(p, 0.9) +
-         0.012 * noise(p * vec3(0.14, 3.6, 3.6) + 31.0) * resolved(p, 0.28);
-}
-
-Skin patterned(Skin skin, vec3 position) {
-  vec3 p = 1e3 * (world_to_pattern * vec4(position, 1.0)).xyz;
-  skin.base *= 0.88 + 4.0 * relief(p);
-  skin.normal = embossed(p, skin.normal, 0.1);
+Skin coloured(Skin skin, vec3 p) {
+  vec4 relief = noise_relief(p, vec3(0.05, 0.9, 0.9), 0.045 * resolved(p, 0.9)) +
+                noise_relief(p + 31.0 / vec3(0.14, 3.6, 3.6), vec3(0.14, 3.6, 3.6), 0.012 * resolved(p, 0.28));
+  skin.base *= 0.88 + 4.0 * relief.x;
+  skin.normal = embossed(relief, skin.normal);
   return skin;
 }
 )";

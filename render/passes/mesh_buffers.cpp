@@ -46,6 +46,9 @@ void SurfaceBuffers::draw() const {
   gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
+// Number of frames over which a live view spreads the computation of visibility.
+constexpr std::size_t live_occlusion_parts = 4;
+
 Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, const MeshChoice& choice) {
   surfaces_.resize(snapshot.bodies.size());
   tints_.resize(snapshot.bodies.size());
@@ -67,7 +70,7 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, con
     bounds_.join(one);
   }
   if (choice.is_occluded) {
-    occlusion_.update(surfaces_);
+    occlusion_.update(surfaces_, choice.keeps_level ? live_occlusion_parts : 1);
   } else {
     occlusion_ = {};
   }

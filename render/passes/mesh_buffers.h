@@ -44,7 +44,9 @@ class SurfaceBuffers {
 
 // How the surfaces of a snapshot are prepared.
 struct MeshChoice {
-  bool keeps_level = true;   // keeps the tessellation while it is neither too coarse nor much too fine
+  // Keeps the tessellation while it is neither too coarse nor much too fine, and lets the visibility of the
+  // vertices follow the bodies within a few frames.
+  bool keeps_level = true;
   bool is_occluded = true;   // computes visibility; otherwise it is 1
   bool shows_fixed = false;  // computes the tint of the fixed part; otherwise it is 0
 };

@@ -24,9 +24,9 @@ constexpr float ghost_translucency = 0.85f;
 constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
-float lift_m(const Snapshot& snapshot) {
+float lift_m(const FrameView& view, const Snapshot& snapshot) {
   const float cell = snapshot.bodies.empty() ? 0.0f : mean_edge_m(snapshot.bodies.front().lattice);
-  return cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m;
+  return std::min(cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m, lift_limit_m(view));
 }
 
 // Returns the length in metres that covers `pixels` pixels, times the interface scale, at the distance of a
@@ -66,6 +66,15 @@ SurfaceDrawing choose_drawing(const BodySnapshot& body, const ViewSettings& sett
   return drawing;
 }
 
+// Gives a soft tool the colour of tools. It has fixed nodes where the hand holds it, which are no part of the
+// body that is shaped.
+void show_as_tool(SurfaceDrawing& drawing) {
+  constexpr Colour colour = palette::tool;
+  drawing.look.base_colour = {srgb8_to_linear(colour.r), srgb8_to_linear(colour.g),
+                              srgb8_to_linear(colour.b)};
+  drawing.shows_fixed = false;
+}
+
 Box bounding_box(const ToolSphere& tool) {
   Box box;
   if (tool.radius_m <= 0.0f) return box;
@@ -103,6 +112,8 @@ Status ScenePasses::prepare(const Snapshot& snapshot, const ViewSettings& settin
   drawings_.clear();
   for (const BodySnapshot& body : snapshot.bodies) {
     drawings_.push_back(choose_drawing(body, settings));
+    const bool is_soft_tool = is_soft(snapshot.tool) && drawings_.size() == snapshot.bodies.size();
+    if (is_soft_tool) show_as_tool(drawings_.back());
     if (Status made = passes_.surface.prepare(drawings_.back().variant()); !made) return made;
   }
   return {};
@@ -115,11 +126,11 @@ void ScenePasses::draw_shadows(const FrameView& view, const Snapshot& snapshot, 
   passes_.shadow.draw(view, bodies.buffers(), bodies.bounds(), bounding_box(tool), tool);
 }
 
-void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
-                       const BodyMeshes& bodies, const RenderTarget& target) {
-  const std::vector<PixelArea> areas = scene_area(snapshot, settings, view, bodies.surfaces());
+void ScenePasses::draw(const FrameView& view, const FrameView& scene_view, const Snapshot& snapshot,
+                       const ViewSettings& settings, const BodyMeshes& bodies, const RenderTarget& target) {
+  const std::vector<PixelArea> areas = scene_area(snapshot, settings, scene_view, bodies.surfaces());
   target.begin_scene(areas);
-  draw_scene(view, snapshot, settings, bodies);
+  draw_scene(scene_view, snapshot, settings, bodies);
   if (settings.is_transparent) {
     target.clear_frame();
   } else {
@@ -148,7 +159,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   }
   passes_.line.draw(view, cells.far, 0.0f);
   draw_bodies(true);
-  passes_.line.draw(view, cells.near, lift_m(snapshot));
+  passes_.line.draw(view, cells.near, lift_m(view, snapshot));
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
@@ -160,7 +171,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
 void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& settings) {
   lines_.clear();
   if (settings.overlays.ground_grid) {
-    append_ground_grid(settings.camera, view.viewport, settings.ground_y_m, lines_);
+    append_ground_grid(settings.camera, view.viewport, settings.ground_y_m, view.studio.ground_line, lines_);
   }
   passes_.line.draw(view, lines_, 0.0f);
   if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
@@ -172,7 +183,7 @@ void ScenePasses::draw_scale_bar(const FrameView& view, const ViewSettings& sett
   const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m);
   if (!bar) return;
   lines_.clear();
-  append_scale_bar(*bar, settings.camera, lines_);
+  append_scale_bar(*bar, settings.camera, view.studio.scale_bar, lines_);
   passes_.line.draw(view, lines_, 0.0f);
 }
 
@@ -193,12 +204,14 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   for (const BodySnapshot& body : snapshot.bodies) {
     if (on.lattice) append_lattice_lines(body.lattice, settings.see_through_body, lines_);
     if (on.control_net && !body.is_mesh()) append_control_net(body.surface, lines_, marks_);
-    if (settings.marks_fixed_nodes()) append_fixed_marks(body.lattice, settings.see_through_body, marks_);
+    const bool is_tool = is_soft(snapshot.tool) && &body == &snapshot.bodies.back();
+    if (settings.marks_fixed_nodes() && !is_tool)
+      append_fixed_marks(body.lattice, settings.see_through_body, marks_);
   }
   if (on.contact_normals) {
     append_contact_normals(snapshot.contacts, contact_normal_length_m(snapshot.tool), lines_);
   }
-  const float lift = lift_m(snapshot);
+  const float lift = lift_m(view, snapshot);
   passes_.line.draw(view, lines_, lift);
   passes_.mark.draw(view, marks_, lift);
 }
@@ -259,7 +272,7 @@ void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
 void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
   marks_.clear();
   for (const BodySnapshot& body : snapshot.bodies) append_touched_marks(body.lattice, marks_);
-  passes_.mark.draw(view, marks_, lift_m(snapshot));
+  passes_.mark.draw(view, marks_, lift_m(view, snapshot));
 }
 
 }  // namespace spoonbill

@@ -47,9 +47,10 @@ class ScenePasses {
   void draw_shadows(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                     const BodyMeshes& bodies);
 
-  // Draws the complete picture into the target's frame.
-  void draw(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
-            const BodyMeshes& bodies, const RenderTarget& target);
+  // Draws the complete picture into the target's frame. `scene_view` is the view in pixels of the scene
+  // layer.
+  void draw(const FrameView& view, const FrameView& scene_view, const Snapshot& snapshot,
+            const ViewSettings& settings, const BodyMeshes& bodies, const RenderTarget& target);
 
  private:
   struct Passes {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -128,7 +129,7 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   program.set("roughness", look.roughness);
   program.set("metalness", look.metalness);
   program.set("translucency", look.translucency);
-  program.set("lift", look.is_clear() ? translucent_lift_m : 0.0f);
+  program.set("lift", look.is_clear() ? std::min(translucent_lift_m, lift_limit_m(view)) : 0.0f);
   program.set("key_map", 0);
   program.set("shadowed", shadow != nullptr ? 1 : 0);
   if (shadow == nullptr) return;

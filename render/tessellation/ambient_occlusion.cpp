@@ -50,29 +50,49 @@ void AmbientOcclusion::Discs::add(const Eigen::Vector3f& centre_m, const Eigen::
   two_sided.push_back(is_two_sided ? 1.0f : 0.0f);
 }
 
-void AmbientOcclusion::update(const std::vector<TessellatedSurface>& surfaces) {
+void AmbientOcclusion::update(const std::vector<TessellatedSurface>& surfaces, std::size_t parts) {
+  SPOONBILL_ASSERT(parts >= 1);
   std::size_t vertices = 0;
   for (const TessellatedSurface& surface : surfaces) vertices += surface.vertex_count();
   const std::size_t wanted = choose_disc_count(vertices, surfaces.size());
-  if (!have_moved(surfaces, wanted)) return;
-  discs_.clear();
-  for (std::size_t b = 0; b < surfaces.size(); ++b) {
-    Groups& groups = bodies_[b].groups;
-    if (!groups.fit(surfaces[b], wanted)) group(surfaces[b], wanted, groups);
-    append_discs(surfaces[b], groups);
+  if (have_moved(surfaces, wanted)) {
+    discs_.clear();
+    for (std::size_t b = 0; b < surfaces.size(); ++b) {
+      Groups& groups = bodies_[b].groups;
+      if (!groups.fit(surfaces[b], wanted)) group(surfaces[b], wanted, groups);
+      append_discs(surfaces[b], groups);
+    }
+    if (vertices * discs_.count() > most_pairs) discs_.clear();
+    parts_left_ = parts;
   }
-  if (vertices * discs_.count() > most_pairs) discs_.clear();
-  for (std::size_t b = 0; b < surfaces.size(); ++b) find_visibility(surfaces[b], bodies_[b].visibility);
+  if (parts_left_ == 0) return;
+  --parts_left_;
+  if (!fits(surfaces)) {
+    for (std::size_t b = 0; b < surfaces.size(); ++b)
+      bodies_[b].visibility.assign(surfaces[b].vertex_count());
+    parts = 1;
+    parts_left_ = 0;
+  }
+  part_ = (part_ + 1) % parts;
+  for (std::size_t b = 0; b < surfaces.size(); ++b)
+    find_visibility(surfaces[b], part_, parts, bodies_[b].visibility);
 }
 
-void AmbientOcclusion::find_visibility(const TessellatedSurface& surface, BothSides& visibility) const {
+bool AmbientOcclusion::fits(const std::vector<TessellatedSurface>& surfaces) const {
+  return std::equal(surfaces.begin(), surfaces.end(), bodies_.begin(), bodies_.end(),
+                    [](const TessellatedSurface& surface, const Body& body) {
+                      return body.visibility.front.size() == surface.vertex_count();
+                    });
+}
+
+void AmbientOcclusion::find_visibility(const TessellatedSurface& surface, std::size_t first, std::size_t step,
+                                       BothSides& visibility) const {
   const GridSamples<float>& samples = surface.samples();
-  visibility.assign(surface.vertex_count());
   const auto seen_from = [&](const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) {
     const float seen = 1.0f - hidden(point_m, normal);
     return std::isfinite(seen) ? std::clamp(seen, 0.0f, 1.0f) : 1.0f;
   };
-  for (std::size_t v = 0; v < surface.vertex_count(); ++v) {
+  for (std::size_t v = first; v < surface.vertex_count(); v += step) {
     const Eigen::Vector3f point_m = point(samples, static_cast<std::uint32_t>(v));
     const Eigen::Vector3f normal(samples.nx[v], samples.ny[v], samples.nz[v]);
     visibility.front[v] = seen_from(point_m, normal);

@@ -28,9 +28,11 @@ struct BothSides {
 // owner, one thread.
 class AmbientOcclusion {
  public:
-  // Computes the visibility of all vertices. Does nothing if no vertex has moved since the last call. Where
-  // there are so many vertices and bodies that it would take seconds, everything is visible.
-  void update(const std::vector<TessellatedSurface>& surfaces);
+  // Computes the visibility of all vertices that moved since the last call, or could see or hide something
+  // that did. Where there are so many vertices and bodies that it would take seconds, everything is visible.
+  // With `parts` above 1, a call computes only one vertex in so many, so that as many calls compute all of
+  // them; the first call for other triangles computes all.
+  void update(const std::vector<TessellatedSurface>& surfaces, std::size_t parts = 1);
 
   // Returns for each vertex of a surface how much of the hemisphere above it no body hides, weighted by the
   // cosine. The back of a closed surface is as visible as its front.
@@ -69,13 +71,19 @@ class AmbientOcclusion {
   };
 
   bool have_moved(const std::vector<TessellatedSurface>& surfaces, std::size_t wanted);
-  void find_visibility(const TessellatedSurface& surface, BothSides& visibility) const;
+  // Returns whether visibility() has a value for each vertex of these surfaces.
+  bool fits(const std::vector<TessellatedSurface>& surfaces) const;
+  // Computes the visibility of vertices `first`, `first + step`...
+  void find_visibility(const TessellatedSurface& surface, std::size_t first, std::size_t step,
+                       BothSides& visibility) const;
   static void group(const TessellatedSurface& surface, std::size_t wanted, Groups& groups);
   void append_discs(const TessellatedSurface& surface, const Groups& groups);
   float hidden(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) const;
 
   std::vector<Body> bodies_;
   Discs discs_;
+  std::size_t parts_left_ = 0;  // number of calls after which all vertices are computed
+  std::size_t part_ = 0;        // part that is computed next
 };
 
 }  // namespace spoonbill

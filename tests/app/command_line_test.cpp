@@ -56,6 +56,7 @@ TEST(CommandLine, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"sample", place.text("model.json"), "--grid", "5", "--out", "-"},
       {"sample", place.text("model.json"), "--grid", "5x5x5", "--out", "-"},
       {"collide"},
+      {"edit", place.text("model.json"), "--quality", "best"},
   };
   for (const auto& arguments : wrong) {
     const Outcome outcome = run(arguments);

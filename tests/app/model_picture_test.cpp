@@ -33,7 +33,7 @@ double reach(const ShownModel& model, const ViewSettings& view, const PictureSet
 }
 
 TEST(ModelPicture, FillsMostOfThePictureFromEverySide) {
-  const ShownModel model = read_shown_model(bundled_handle, {}).value();
+  const ShownModel model = read_shown_model(bundled_handle, {}, {}).value();
   for (const char* side : {"perspective", "front", "right", "top", "120,-40"}) {
     PictureSettings picture;
     picture.direction = parse_view_direction(side).value();
@@ -43,7 +43,7 @@ TEST(ModelPicture, FillsMostOfThePictureFromEverySide) {
 
 // The handle is much longer than wide. While it turns, it stays in the picture and keeps its size.
 TEST(ModelPicture, TurnsAtTheSameDistance) {
-  const ShownModel model = read_shown_model(bundled_handle, {}).value();
+  const ShownModel model = read_shown_model(bundled_handle, {}, {}).value();
   const PictureSettings picture;
   const std::vector<ViewSettings> views = make_turntable(model, picture, 12);
   ASSERT_EQ(views.size(), 12u);
@@ -65,12 +65,46 @@ TEST(ModelPicture, StudiosAreParsed) {
 }
 
 TEST(ModelPicture, StandsOnALevelGroundOnly) {
-  ShownModel model = read_shown_model(bundled_handle, {}).value();
+  ShownModel model = read_shown_model(bundled_handle, {}, {}).value();
   const double lowest_m = make_picture_view(model, {}).ground_y_m;
   model.ground = Ground{{0.0, -0.05, 0.0}, Vector3::UnitY(), 0.3};
   EXPECT_EQ(make_picture_view(model, {}).ground_y_m, -0.05);
   model.ground->normal = Vector3(0.1, 1.0, 0.0).normalized();
   EXPECT_EQ(make_picture_view(model, {}).ground_y_m, lowest_m);
+}
+
+// The tool of the document rests on the highest point and stays in the picture.
+TEST(ModelPicture, ShowsTheToolOnTop) {
+  ShownModel model = read_shown_model(bundled_handle, {}, {}).value();
+  const double highest_m = drawn_bounds(model.snapshot).high.y();
+  rest_tool_on_top(model);
+  const ToolSnapshot& tool = model.snapshot.tool;
+  ASSERT_GT(tool.radius_m, 0.0);
+  EXPECT_NEAR(tool.proxy.position_m.y() - tool.radius_m, highest_m, 0.1e-3);
+  PictureSettings picture;
+  picture.overlays.tool = true;
+  const ViewSettings view = make_picture_view(model, picture);
+  const Viewport viewport = make_viewport(picture.width_px, picture.height_px, {});
+  const auto top = project(view.camera, viewport, tool.proxy.position_m + tool.radius_m * Vector3::UnitY());
+  ASSERT_TRUE(top);
+  EXPECT_GT(top->y(), 0.0);
+  EXPECT_LT(make_picture_view(model, {}).camera.distance_m, view.camera.distance_m);
+}
+
+// A turning model keeps the tool in all pictures.
+TEST(ModelPicture, TurnsWithTheTool) {
+  ShownModel model = read_shown_model(bundled_handle, {}, {}).value();
+  model.snapshot.tool.radius_m = 0.03;
+  rest_tool_on_top(model);
+  PictureSettings picture;
+  picture.overlays.tool = true;
+  const ToolSnapshot& tool = model.snapshot.tool;
+  const Viewport viewport = make_viewport(picture.width_px, picture.height_px, {});
+  for (const ViewSettings& view : make_turntable(model, picture, 6)) {
+    const auto top = project(view.camera, viewport, tool.proxy.position_m + tool.radius_m * Vector3::UnitY());
+    ASSERT_TRUE(top);
+    EXPECT_GT(top->y(), 0.0);
+  }
 }
 
 }  // namespace

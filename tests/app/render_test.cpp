@@ -119,6 +119,7 @@ TEST(Render, ShowsTheChosenMaterialAndOverlays) {
   EXPECT_NE(picture_of({handle, "--material", "steel"}, place), plain);
   EXPECT_NE(picture_of({handle, "--overlays", "grid"}, place), plain);
   EXPECT_NE(picture_of({handle, "--overlays", "net,scale"}, place), plain);
+  EXPECT_NE(picture_of({handle, "--overlays", "tool"}, place), plain);
   EXPECT_EQ(plain.pixel(0, 0)[3], 255);
   const Image alone = picture_of({handle, "--transparent"}, place);
   EXPECT_EQ(alone.pixel(0, 0)[3], 0);
@@ -134,6 +135,25 @@ TEST(Render, ShowsSeveralModelsTogether) {
   EXPECT_EQ(json_of(outcome.out)["bodies"], 2);
 }
 
+TEST(Render, ShowsTheToolOnMeshesToo) {
+  const Workplace place;
+  place.write("corner.stl", binary_stl(tetrahedron()));
+  const std::string corner = place.text("corner.stl");
+  EXPECT_NE(picture_of({corner, "--overlays", "tool", "--force"}, place),
+            picture_of({corner, "--force"}, place));
+}
+
+TEST(Render, ReadsMeshesInTheGivenUnit) {
+  const Workplace place;
+  place.write("corner.stl", binary_stl(tetrahedron()));
+  for (const auto& [unit, size_m] : {std::pair("mm", 0.01), std::pair("in", 0.254)}) {
+    const Outcome outcome =
+        render({place.text("corner.stl"), "--unit", unit, "--force"}, place.text("picture.png"));
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+    EXPECT_NEAR(json_of(outcome.out)["size_m"][0].get<double>(), size_m, 1e-6);
+  }
+}
+
 TEST(Render, RefusesWhatItCannotDraw) {
   const Workplace place;
   place.write("empty.ply", "");
@@ -147,6 +167,8 @@ TEST(Render, RefusesWhatItCannotDraw) {
            {handle, "--view", "behind"},
            {handle, "--view", "10,95"},
            {handle, "--overlays", "grid,fog"},
+           {handle, "--studio", "dusk"},
+           {handle, "--unit", "m"},
            {handle, "--material", "unobtainium"},
            {handle, "--turntable", "10"},
        }) {

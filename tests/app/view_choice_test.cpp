@@ -33,6 +33,17 @@ TEST(ViewChoice, ReadsCameraAndOverlays) {
   EXPECT_TRUE(view->see_through_body);
 }
 
+TEST(ViewChoice, TheGroundIsThatOfTheSceneFirst) {
+  ViewChoice view;
+  Framing framing{Box{Vector3(0, -0.01, 0), Vector3(1, 1, 1)}, std::nullopt, -0.02};
+  const auto ground = [&] { return make_view_settings(view, framing, 640, 480, {}, 1.0).ground_y_m; };
+  EXPECT_EQ(ground(), -0.02);
+  view.ground_y_m = -0.04;
+  EXPECT_EQ(ground(), -0.04);
+  framing.scene_ground_y_m = 0.03;
+  EXPECT_EQ(ground(), 0.03);
+}
+
 TEST(ViewChoice, CommandsChangeWhatTheyName) {
   ViewChoice choice;
   ASSERT_TRUE(

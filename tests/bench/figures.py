@@ -59,6 +59,12 @@ LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
         "without work, just after; ")
 LIVE = "60 s of `spoonbill record --live --draw`, strokes, and a command every tenth of a second while they press; "
+# Model, quality of the frames, and the pixel at which the stroke begins.
+WINDOW_CASES = {"handle, full quality": ("spoon-handle", "full", (900, 250)),
+                "handle, lowest": ("spoon-handle", "lowest", (900, 250)),
+                "jelly, lowest": ("jelly-on-spoon", "lowest", (797, 320))}
+WINDOW = ("frames of `spoonbill edit` at 1280x720 with the panel, on a virtual display, while a mouse presses and stirs "
+          "beside the 1 kHz loop, 15 s; ")
 START_CASES = {"version": ["--version"], "info": ["info", "assets/models/trimmed-plate.json"]}
 START = "from starting the program to its end, the median of 21; "
 LATE = "p99 of how late a tick begins, as above; "
@@ -120,7 +126,14 @@ FIGURES = (
     Figure("trial_tick_us", "us", "ours", "at most", 800, "as above, p99 over ticks", "jelly, p99"),
     Figure("trial_vs_peer", "s per s", "ratio", "at least", 5, JELLY),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
-           "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
+           "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow, occlusion and "
+           "reflections"),
+    Figure("window_frame_ms", "ms", "ratio", "at least", 0.7,
+           WINDOW + "mean from frame to frame; peer: the program that the variable SPOONBILL_PEER names, if "
+           "any, which must draw in full too",
+           "handle, full quality"),
+    Figure("window_frame_ms", "ms", "ours", "at most", 16.7, WINDOW + "95 % of frames take no longer", "handle, lowest"),
+    Figure("window_frame_ms", "ms", "ours", "at most", 16.7, WINDOW + "95 % of frames take no longer", "jelly, lowest"),
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),
     Figure("merge_ms", "ms", "ours", "at most", 20,
            "two patches of 30 x 30 control points that share an edge merged into one, C2"),

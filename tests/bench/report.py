@@ -14,7 +14,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, START_CASES, TICK_CASES
+from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, START_CASES, TICK_CASES, WINDOW_CASES
+from window import drawn_while_pressing, quantile
 
 LOOP_SECONDS = 20
 LIVE_SECONDS = 60
@@ -76,6 +77,11 @@ class Measurements:
             seconds, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
         used = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
         return done["frames"], seconds, used
+
+    def window(self, model, quality, start, program=None):
+        """Presses in the window of a program, ours by default. Returns how it drew."""
+        return drawn_while_pressing(program or self.build / "app/spoonbill", ROOT / f"assets/models/{model}.json",
+                                    quality, start)
 
     def start(self, arguments, rounds=21):
         """Returns the milliseconds from starting the program with these arguments to its end, sorted."""
@@ -257,6 +263,25 @@ def measured_frames(measure, _figure):
                         "frames_per_second_if_two_cores_were_free": 2 * frames / used}}
 
 
+def measured_window(measure, figure):
+    """Without a peer, the frame rate at full quality is reported and not judged."""
+    model, quality, start = WINDOW_CASES[figure.case]
+    drawn = measure.window(model, quality, start)
+    if drawn["touching"] < 0.2:
+        raise RuntimeError(f"the tool touched in {drawn['touching']:.0%} of the frames only")
+    details = {key: value for key, value in drawn.items() if key != "frame_ms"}
+    if figure.judged == "ours":
+        return {"ours": quantile(drawn["frame_ms"], 0.95), "details": details}
+    program = os.environ.get("SPOONBILL_PEER")
+    rates = [drawn["frames_per_second"]]
+    if program:
+        rates.append(measure.window(model, None, start, program)["frames_per_second"])
+    if None in rates:
+        raise RuntimeError("Mesa counted no frames")
+    ours, *peer = (1e3 / rate for rate in rates)
+    return {"ours": ours, "details": details, **({"peer": peer[0], "ratio": peer[0] / ours} if peer else {})}
+
+
 def measured_start(measure, figure):
     times = measure.start(START_CASES[figure.case])
     return {"ours": times[len(times) // 2], "details": {"least": times[0], "most": times[-1]}}
@@ -281,7 +306,8 @@ def measured(measure, figure):
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
             "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,
             "live_memory_growth": measured_live_memory,
-            "loop_p99_us": measured_lateness, "start_ms": measured_start}[figure.name](measure, figure)
+            "loop_p99_us": measured_lateness, "start_ms": measured_start,
+            "window_frame_ms": measured_window}[figure.name](measure, figure)
 
 
 def row_of(measure, figure):

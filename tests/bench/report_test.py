@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import os
 import sys
 import tempfile
 import unittest
@@ -35,6 +36,10 @@ class MadeUp:
 
     def replay(self):
         return 300, 6.0, 9.0
+
+    def window(self, _model, quality, _start, program=None):
+        return {"frames_per_second": 50.0 if program else 40.0, "touching": 1.0,
+                "frame_ms": [float(k) for k in range(1, 21 if quality == "lowest" else 41)]}
 
     def start(self, _arguments):
         return [20.0, 30.0, 90.0]
@@ -98,6 +103,13 @@ class Report(unittest.TestCase):
         late = report.lateness_of("# Histogram\n000010 000900\n000020 000095\n001500 000003\n"
                                   "# Histogram Overflows: 00002\n")
         self.assertEqual(late, {"ticks": 1000, "missed": 5, "p50_us": 10, "p99_us": 20, "p999_us": 1500})
+
+    def test_the_window_is_judged_beside_another_program_if_one_is_named(self):
+        alone = json.loads(run("--json", "window_frame_ms")[1])["figures"]
+        self.assertEqual([(row["ours"], row["met"]) for row in alone], [(25.0, None), (20.0, False), (20.0, False)])
+        with mock.patch.dict(os.environ, {"SPOONBILL_PEER": "other"}):
+            row = json.loads(run("--json", "window_frame_ms")[1])["figures"][0]
+        self.assertEqual((row["peer"], row["ratio"], row["met"]), (20.0, 0.8, True))
 
     def test_unknown_names_are_wrong_use(self):
         with self.assertRaises(SystemExit) as stopped:

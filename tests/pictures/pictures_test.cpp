@@ -326,7 +326,7 @@ TEST_F(MergePictures, Spoon) {
 
 // Pictures of models that nobody touches.
 Image model_picture(const std::string& model, const std::string& material, int width, int height) {
-  const auto shown = read_shown_model(model_folder / (model + ".json"), Progress());
+  const auto shown = read_shown_model(model_folder / (model + ".json"), {}, Progress());
   EXPECT_TRUE(shown) << shown.error().message;
   ShownModel painted = shown.value();
   if (!material.empty()) show_material(material, painted);

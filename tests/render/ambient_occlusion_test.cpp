@@ -148,6 +148,25 @@ TEST(AmbientOcclusion, FollowsBodiesThatMove) {
   EXPECT_GT(mean_visibility(occlusion, 0), 0.98);
 }
 
+TEST(AmbientOcclusion, FollowsInPartsWithinAsManyCalls) {
+  const auto floor = [] { return sheet(24, [](double u, double v) { return Vector3(v, 0.0, u); }); };
+  const auto lid = [](double y) { return sheet(24, [=](double u, double v) { return Vector3(u, y, v); }); };
+  constexpr std::size_t parts = 4;
+  AmbientOcclusion whole, divided;
+  divided.update(scene_of(floor(), lid(5.0)), parts);
+  EXPECT_GT(mean_visibility(divided, 0), 0.98) << "the first call computes all";
+  whole.update(scene_of(floor(), lid(0.1)));
+  std::vector<float> last = divided.visibility(0).front;
+  for (std::size_t call = 0; call < parts; ++call) {
+    divided.update(scene_of(floor(), lid(0.1)), parts);
+    std::size_t changed = 0;
+    for (std::size_t v = 0; v < last.size(); ++v) changed += divided.visibility(0).front[v] != last[v];
+    EXPECT_NEAR(static_cast<double>(changed), static_cast<double>(last.size()) / parts, 2.0) << call;
+    last = divided.visibility(0).front;
+  }
+  EXPECT_EQ(last, whole.visibility(0).front);
+}
+
 TEST(AmbientOcclusion, IsFiniteForAShapeThatIsNot) {
   AmbientOcclusion occlusion;
   const float nan = std::nanf("");

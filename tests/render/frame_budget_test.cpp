@@ -64,6 +64,7 @@ TEST(FrameBudget, AHopelessMachineEndsAtTheCoarsest) {
   EXPECT_EQ(settings.samples, 0);
   EXPECT_FALSE(settings.shadow);
   EXPECT_LT(settings.detail, 1.0);
+  EXPECT_LT(settings.resolution, 1.0);
 }
 
 TEST(FrameBudget, ASingleStallChangesNothing) {
@@ -120,6 +121,15 @@ TEST(FrameBudget, WhatSomebodyChoseIsNeverRaised) {
   changes(budget, hopeless, 60);
   budget.apply(settings);
   EXPECT_EQ(settings.detail, 0.25);
+}
+
+TEST(FrameBudget, AFixedQualityStays) {
+  for (const FrameQuality quality : {FrameQuality::full, FrameQuality::coarse}) {
+    FrameBudget budget(frame_s, quality);
+    EXPECT_EQ(changes(budget, hopeless, 60), 0);
+    EXPECT_EQ(changes(budget, fast, 1000), 0);
+    EXPECT_EQ(budget.quality(), quality);
+  }
 }
 
 TEST(FrameBudget, ATimeThatIsNoNumberCountsAsLate) {

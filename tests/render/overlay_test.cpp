@@ -163,6 +163,21 @@ TEST(FixingPlane, LiesInItsPlaneAroundTheFixedNodes) {
   EXPECT_LT(box.high.z() - box.low.z(), 0.040);
 }
 
+// A plane below a block that fills the picture stays in the picture.
+TEST(FixingPlane, StaysInThePicture) {
+  const Box block{Vector3(-0.02, 0.0, -0.02), Vector3(0.02, 0.02, 0.02)};
+  const Viewport viewport = make_viewport(1280, 720, {});
+  const Camera camera = frame(look_from({}, StandardView::perspective), block, viewport);
+  for (const Vector3& normal : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)}) {
+    const PlaneSnapshot plane{block.low, normal};
+    for (const Vector3& corner : fixing_plane_corners(plane, {}, block)) {
+      const auto pixel = project(camera, viewport, corner);
+      ASSERT_TRUE(pixel);
+      EXPECT_TRUE(pixel->x() > 0.0 && pixel->x() < 1280.0 && pixel->y() > 0.0 && pixel->y() < 720.0);
+    }
+  }
+}
+
 TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
   Box body;
   body.include({0.0, 0.01, -0.006});

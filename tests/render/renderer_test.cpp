@@ -333,6 +333,33 @@ TEST_F(Rendering, FourSamplesSmoothTheEdges) {
   EXPECT_LT(steepest_row_steps(smooth_image), 0.95 * steepest_row_steps(rough_image));
 }
 
+// With fewer pixels, edges are less sharp, and nothing is elsewhere.
+TEST_F(Rendering, FewerPixelsShowTheSame) {
+  settings_.samples = 0;
+  settings_.panel_px = {0.0, 0.0, 0.2 * sample_width_px, 1.0 * sample_height_px};
+  const Image whole = picture();
+  ViewSettings fewer = settings_;
+  for (const double resolution : {0.5, 0.77}) {
+    fewer.resolution = resolution;
+    const double difference = worst_block_difference(whole, picture(snapshot_, fewer))->worst;
+    EXPECT_GT(difference, 0.1);
+    EXPECT_LT(difference, 25.0) << resolution;  // 18 at the edge of the tool
+  }
+}
+
+// Pixels of an earlier frame beside the areas of this one do not show.
+TEST_F(Rendering, FewerPixelsShowNothingOfEarlierFrames) {
+  settings_.samples = 0;
+  settings_.resolution = 0.5;
+  settings_.keep_level = false;
+  ViewSettings moved = settings_;
+  moved.camera.yaw_rad += 0.6;
+  moved.camera.distance_m *= 1.7;
+  const Image alone = picture(snapshot_, moved);
+  picture();
+  EXPECT_EQ(picture(snapshot_, moved), alone);
+}
+
 TEST_F(Rendering, ABrokenSurfaceOrSettingIsAnErrorNotACrash) {
   ViewSettings odd = settings_;
   odd.samples = 3;

@@ -185,7 +185,7 @@ TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   EXPECT_GE(rest.low.x(), right.low.x());
 }
 
-// A soft tool, here a box of triangles, is drawn opaque, in the right position, and lit as bodies are.
+// A soft tool, here a box of triangles, is drawn opaque, in the right position, lit as bodies are, and blue.
 TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   auto triangles = std::make_shared<std::vector<TriangleCorners>>();
   for (const auto& [a, b, c, d] :
@@ -217,6 +217,7 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   const Changed seen = difference(picture(nothing, settings), picture(snapshot, settings));
   expect_same_bounds(seen, projected_tool(box, frame));
   EXPECT_GT(seen.count, 300);
+  EXPECT_GT(seen.bluer, 0.9 * seen.count);  // the colour of tools
   // The picture moves with the tool.
   for (float& y : snapshot.bodies[0].mesh.y) y += 0.01F;
   ToolFrame higher = frame;
