@@ -72,6 +72,7 @@ Status add_document_and_simulation(FactSheet& facts, const Document& document, c
   add_elasticity_facts(facts, simulation.value());
   add_notes(facts, simulation->warnings());
   add_cell_facts(facts, simulation.value(), maps.reports());
+  facts.add("", "", "shape_hash", hash_text(shape_hash(simulation.value())));
   return {};
 }
 

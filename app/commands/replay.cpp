@@ -294,6 +294,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   }
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
+  facts.add("", "", "shape_hash", hash_text(shape_hash(session->simulation)));
   facts.add("", "", "complete", recording.end.has_value());
   facts.add("", "", "instruction_set", std::string(name_of(options.instruction_set)));
   facts.print(console.out, options.json);

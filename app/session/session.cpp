@@ -238,6 +238,37 @@ std::uint64_t state_hash(const Session& session) {
   return hash.value();
 }
 
+std::uint64_t shape_hash(const Simulation& simulation) {
+  Document document{{}, simulation.scene(), {}};
+  simulation.write_scene(document.scene);
+  // A tick may change the sign of a zero. The sum with 0 is never -0.
+  for (Body& body : document.scene.bodies) {
+    for (std::vector<double>* const coordinates :
+         {&body.surface.net.x, &body.surface.net.y, &body.surface.net.z}) {
+      for (double& value : *coordinates) value += 0.0;
+    }
+  }
+  const Json json = document_to_json(document);
+  StateHash hash;
+  for (const char* part : {"body", "other_bodies", "fixing_planes"}) {
+    const std::string text = json.value(part, Json()).dump();
+    for (const char letter : text) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(letter)));
+  }
+  for (std::size_t b = 0; b < document.scene.bodies.size(); ++b) {
+    simulation.lattice(static_cast<int>(b)).visit_deformation([&](const float* values, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const float value = values[i] + 0.0f;
+        hash.add(&value, 1);
+      }
+    });
+  }
+  for (const Pose& pose : simulation.shape().poses) {
+    for (int axis = 0; axis < 3; ++axis) hash.add(pose.position_m[axis] + 0.0);
+    for (int k = 0; k < 4; ++k) hash.add(pose.orientation.coeffs()[k] + 0.0);
+  }
+  return hash.value();
+}
+
 Document make_session_document(const Session& session) {
   Document document{session.title, session.simulation.scene(), view_to_json(session.view)};
   session.simulation.write_scene(document.scene);

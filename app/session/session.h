@@ -105,6 +105,11 @@ void write_snapshot(const Session& session, Snapshot& snapshot);
 // Returns the FNV-1a hash of all data on which the next tick depends, bit for bit.
 std::uint64_t state_hash(const Session& session);
 
+// Returns a hash of the bodies as documents store them, of the deformation of their lattices, of the fixing
+// planes and of the poses. Tick, tool, settings, velocities and forces do not count: undoing every stroke
+// gives back the hash of the start if nothing but strokes has moved the bodies. Must be called between ticks.
+std::uint64_t shape_hash(const Simulation& simulation);
+
 // Returns the document of the current state, as it would be saved.
 Document make_session_document(const Session& session);
 

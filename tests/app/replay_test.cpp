@@ -282,5 +282,25 @@ TEST(Replay, UndoTakesTheSecondStrokeBack) {
   EXPECT_NE(hash_of("with.json", script), hash_of("without.json", without));
 }
 
+TEST(Replay, UndoingEveryStrokeGivesBackTheShapeHash) {
+  const Workplace place;
+  const auto hash_after = [&](const std::string& undone) {
+    std::string script = content_of(place.path("script.json"));
+    const std::string plane =
+        "{\"command\": \"place_plane\", \"point_mm\": [20, 0, 0], \"normal\": [1, 0, 0]},";
+    const std::string undo = "{\"command\": \"undo\"},";
+    script.erase(script.find(plane), plane.size());
+    script.replace(script.find(undo), undo.size(), undone);
+    place.write("some.json", script);
+    const std::string recording = place.text("some.recording.jsonl");
+    EXPECT_EQ(run({"record", place.text("some.json"), "--out", recording, "--force"}).code, exit_done);
+    return json_of(run({"replay", recording, "--no-frames", "--json"}).out)["shape_hash"];
+  };
+  const Json start = json_of(run({"info", place.text("model.json"), "--json"}).out)["shape_hash"];
+  ASSERT_TRUE(start.is_string());
+  EXPECT_NE(hash_after("{\"command\": \"undo\"},"), start);
+  EXPECT_EQ(hash_after("{\"command\": \"undo\"}, {\"command\": \"undo\"},"), start);
+}
+
 }  // namespace
 }  // namespace spoonbill

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/session/session.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
@@ -72,6 +73,36 @@ TEST(StrokeHistory, UndoGivesTheShapeBeforeTheStrokeBitForBit) {
   ASSERT_TRUE(touched.history.undo(touched.simulation));
   EXPECT_EQ(touched.simulation.shape(), before);
   EXPECT_FALSE(touched.history.can_undo());
+}
+
+TEST(StrokeHistory, UndoGivesBackTheShapeHash) {
+  Touched touched;
+  touched.history.clear(touched.simulation);
+  const std::uint64_t start = shape_hash(touched.simulation);
+  touched.hold(0.03, 20);
+  EXPECT_EQ(shape_hash(touched.simulation), start) << "ticks do not count";
+  Tool tool = touched.simulation.scene().tool;
+  tool.radius_m *= 1.5;
+  ASSERT_TRUE(touched.simulation.apply(SetTool{tool}));
+  EXPECT_EQ(shape_hash(touched.simulation), start) << "the tool does not count";
+  touched.stroke();
+  EXPECT_NE(shape_hash(touched.simulation), start);
+  ASSERT_TRUE(touched.history.undo(touched.simulation));
+  EXPECT_EQ(shape_hash(touched.simulation), start);
+}
+
+TEST(StrokeHistory, TheShapeHashHasMaterialsAndPlanes) {
+  Touched touched;
+  const std::uint64_t start = shape_hash(touched.simulation);
+  const Material before = touched.simulation.scene().bodies[0].material;
+  Material stiffer = before;
+  stiffer.youngs_modulus_pa *= 1.01;
+  ASSERT_TRUE(touched.simulation.apply(SetMaterial{stiffer}));
+  EXPECT_NE(shape_hash(touched.simulation), start);
+  ASSERT_TRUE(touched.simulation.apply(SetMaterial{before}));
+  EXPECT_EQ(shape_hash(touched.simulation), start);
+  ASSERT_TRUE(touched.simulation.apply(PlacePlane{{Vector3(0.01, 0, 0), Vector3::UnitX()}}));
+  EXPECT_NE(shape_hash(touched.simulation), start);
 }
 
 TEST(StrokeHistory, WalksBackAndForthOverSeveralStrokes) {

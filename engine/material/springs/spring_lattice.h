@@ -154,6 +154,17 @@ class SpringLattice {
   template <class Visitor>
   void visit_shape(Visitor&& visit) const {
     for (const auto* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) visit(a->data(), a->size());
+    visit_rest(visit);
+  }
+  // Visits what visit_shape() does, except the velocities.
+  template <class Visitor>
+  void visit_deformation(Visitor&& visit) const {
+    for (const auto* a : {&dx_, &dy_, &dz_}) visit(a->data(), a->size());
+    visit_rest(visit);
+  }
+  // Visits rest lengths, creep strains and rest volumes.
+  template <class Visitor>
+  void visit_rest(Visitor&& visit) const {
     for (const auto& a : rest_length_) visit(a.data(), a.size());
     for (const auto& a : square_difference_) visit(a.data(), a.size());
     for (const auto& a : crept_) visit(a.data(), a.size());
