@@ -157,14 +157,12 @@ CommandEntry add_render(OptionSet root) {
   add_parsed_option(
       parser, "--overlays", "LIST", parse_picture_overlays,
       [options](const Overlays& overlays) { options->picture.overlays = overlays; },
-      "What is shown beside the model, separated by commas: grid, scale, legend, net, planes, and tool, "
-      "which is "
-      "put on the highest point; default: nothing");
+      "What is shown beside the model, separated by commas: grid, scale, legend, net, planes, and tool, on "
+      "the highest point; default: nothing");
   add_parsed_option(
       parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
       [options](const LengthUnit& unit) { options->unit = unit; },
-      "Unit of the numbers in meshes and clouds: mm, cm, m or in; default: m for .ply and .pcd, mm for "
-      "others");
+      "Unit of the numbers in meshes and clouds: mm, cm, m or in; default: m for .ply and .pcd, else mm");
   const CommandOption transparent =
       parser.add_flag("--transparent", options->picture.is_transparent, "Leave out the background");
   const CommandOption video =

@@ -58,7 +58,7 @@ class RenderTarget {
   // Copies the frame, top row first.
   void read(Image& image) const;
 
-  // Copies the frame to the framebuffer of the window. Mesa's software renderer does so without drawing it if
+  // Copies the frame to the framebuffer of the window. Mesa's software renderer takes half as long if
   // both have the same order of channels, usually GL_BGRA.
   void copy_to_window() const;
 

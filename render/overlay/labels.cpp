@@ -134,8 +134,7 @@ std::vector<Label> make_legend(const Snapshot& snapshot, const ViewSettings& set
   };
   std::size_t fixed = 0, touched = 0;
   for (const BodySnapshot& body : snapshot.bodies) {
-    const bool is_tool = is_soft(snapshot.tool) && &body == &snapshot.bodies.back();
-    if (!is_tool) fixed += count_set(body.lattice.fixed);
+    if (!is_tool_body(snapshot, body)) fixed += count_set(body.lattice.fixed);
     touched += count_set(body.lattice.touched);
   }
   if (on.tool) {

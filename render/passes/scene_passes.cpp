@@ -112,8 +112,7 @@ Status ScenePasses::prepare(const Snapshot& snapshot, const ViewSettings& settin
   drawings_.clear();
   for (const BodySnapshot& body : snapshot.bodies) {
     drawings_.push_back(choose_drawing(body, settings));
-    const bool is_soft_tool = is_soft(snapshot.tool) && drawings_.size() == snapshot.bodies.size();
-    if (is_soft_tool) show_as_tool(drawings_.back());
+    if (is_tool_body(snapshot, body)) show_as_tool(drawings_.back());
     if (Status made = passes_.surface.prepare(drawings_.back().variant()); !made) return made;
   }
   return {};
@@ -204,8 +203,7 @@ void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,
   for (const BodySnapshot& body : snapshot.bodies) {
     if (on.lattice) append_lattice_lines(body.lattice, settings.see_through_body, lines_);
     if (on.control_net && !body.is_mesh()) append_control_net(body.surface, lines_, marks_);
-    const bool is_tool = is_soft(snapshot.tool) && &body == &snapshot.bodies.back();
-    if (settings.marks_fixed_nodes() && !is_tool)
+    if (settings.marks_fixed_nodes() && !is_tool_body(snapshot, body))
       append_fixed_marks(body.lattice, settings.see_through_body, marks_);
   }
   if (on.contact_normals) {

@@ -301,6 +301,10 @@ bool is_soft(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && tool.body && tool.body->soft;
 }
 
+bool is_tool_body(const Snapshot& snapshot, const BodySnapshot& body) {
+  return is_soft(snapshot.tool) && !snapshot.bodies.empty() && &body == &snapshot.bodies.back();
+}
+
 Box bounding_box(const ToolSolid& solid) {
   return std::visit(SolidBox{}, solid);
 }

@@ -17,6 +17,8 @@ namespace spoonbill {
 // tool, which is one of the bodies of the snapshot.
 const ToolBody* rigid_body(const ToolSnapshot& tool);
 bool is_soft(const ToolSnapshot& tool);
+// Returns whether a body of the snapshot is its soft tool.
+bool is_tool_body(const Snapshot& snapshot, const BodySnapshot& body);
 
 // Radius of the disc that represents a half-space, around its origin.
 inline constexpr double half_space_radius_m = 0.05;
