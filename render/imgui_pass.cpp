@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 namespace spoonbill {
@@ -53,6 +54,63 @@ const void* offset(std::size_t bytes) {
   return reinterpret_cast<const void*>(bytes);
 }
 
+// A rectangle of the framebuffer, with the origin of GL.
+struct PixelRectangle {
+  int left = 0, bottom = 0, right = 0, top = 0;
+
+  PixelRectangle intersection(const PixelRectangle& other) const {
+    return {std::max(left, other.left), std::max(bottom, other.bottom), std::min(right, other.right),
+            std::min(top, other.top)};
+  }
+  bool empty() const { return left >= right || bottom >= top; }
+};
+
+// Converts rectangles of the display to the framebuffer.
+struct DisplayArea {
+  ImVec2 origin, scale;
+  float height_px;
+
+  explicit DisplayArea(const ImDrawData& data)
+      : origin(data.DisplayPos),
+        scale(data.FramebufferScale),
+        height_px(data.DisplaySize.y * data.FramebufferScale.y) {}
+
+  ImVec2 pixel(const ImVec2& at) const {
+    return {(at.x - origin.x) * scale.x, height_px - (at.y - origin.y) * scale.y};
+  }
+  PixelRectangle rectangle(const ImVec2& low, const ImVec2& high) const {
+    const ImVec2 a = pixel(low), b = pixel(high);
+    return {static_cast<int>(a.x), static_cast<int>(b.y), static_cast<int>(b.x), static_cast<int>(a.y)};
+  }
+};
+
+bool is_whole(const ImVec2& pixel) {
+  return pixel.x == std::floor(pixel.x) && pixel.y == std::floor(pixel.y);
+}
+
+constexpr float fewest_cleared_px = 1000.0f;  // in a smaller rectangle, clearing takes as long as drawing
+
+// Returns the pixels that two triangles fill with one opaque colour: those of a rectangle that ImGui has
+// drawn without a texture, if it is large and aligned with the pixels. `corners` are the six indices of the
+// triangles.
+std::optional<PixelRectangle> find_solid(const ImDrawVert* vertices, const ImDrawIdx* corners,
+                                         const ImVec2& white, const DisplayArea& area) {
+  if (corners[3] != corners[0] || corners[4] != corners[2]) return std::nullopt;
+  const ImDrawVert& a = vertices[corners[0]];
+  const ImDrawVert& c = vertices[corners[2]];
+  const bool has_corners = vertices[corners[1]].pos.x == c.pos.x && vertices[corners[1]].pos.y == a.pos.y &&
+                           vertices[corners[5]].pos.x == a.pos.x && vertices[corners[5]].pos.y == c.pos.y;
+  if (!has_corners || (a.col >> IM_COL32_A_SHIFT) != 255) return std::nullopt;
+  for (const int corner : {0, 1, 2, 5}) {
+    const ImDrawVert& vertex = vertices[corners[corner]];
+    if (vertex.col != a.col || vertex.uv.x != white.x || vertex.uv.y != white.y) return std::nullopt;
+  }
+  const ImVec2 first = area.pixel(a.pos), last = area.pixel(c.pos);
+  const bool is_large = (last.x - first.x) * (first.y - last.y) >= fewest_cleared_px;
+  if (!is_large || !is_whole(first) || !is_whole(last)) return std::nullopt;
+  return area.rectangle(a.pos, c.pos);
+}
+
 }  // namespace
 
 Result<ImGuiPass> ImGuiPass::make(const GlFunctions& gl) {
@@ -90,6 +148,7 @@ void ImGuiPass::upload_fonts(ImFontAtlas& atlas) {
   constexpr GLint white_with_coverage[4] = {GL_ONE, GL_ONE, GL_ONE, GL_RED};
   gl_->TexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, white_with_coverage);
   atlas.SetTexID(texture_handle(atlas_.id()));
+  white_ = atlas.TexUvWhitePixel;
 }
 
 void ImGuiPass::set_state(const ImDrawData& data) const {
@@ -119,29 +178,55 @@ void ImGuiPass::draw_list(const ImDrawData& data, const ImDrawList& list) const 
                   list.VtxBuffer.Data, GL_STREAM_DRAW);
   gl_->BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.Size * static_cast<GLsizeiptr>(sizeof(ImDrawIdx)),
                   list.IdxBuffer.Data, GL_STREAM_DRAW);
-  const float height = data.DisplaySize.y * data.FramebufferScale.y;
   for (const ImDrawCmd& command : list.CmdBuffer) {
-    if (command.UserCallback != nullptr) {
-      if (command.UserCallback == ImDrawCallback_ResetRenderState) {
-        set_state(data);
-      } else {
-        command.UserCallback(&list, &command);
-      }
+    if (command.UserCallback == nullptr) {
+      draw_command(data, list, command);
+    } else if (command.UserCallback == ImDrawCallback_ResetRenderState) {
+      set_state(data);
+    } else {
+      command.UserCallback(&list, &command);
+    }
+  }
+}
+
+void ImGuiPass::draw_command(const ImDrawData& data, const ImDrawList& list, const ImDrawCmd& command) const {
+  const DisplayArea area(data);
+  const PixelRectangle clip =
+      area.rectangle({command.ClipRect.x, command.ClipRect.y}, {command.ClipRect.z, command.ClipRect.w});
+  if (clip.empty()) return;
+  const auto set_scissor = [&](const PixelRectangle& pixels) {
+    gl_->Scissor(pixels.left, pixels.bottom, pixels.right - pixels.left, pixels.top - pixels.bottom);
+  };
+  set_scissor(clip);
+  gl_->BindTexture(GL_TEXTURE_2D, texture_name(command.GetTexID()));
+  const auto draw_indices = [&](unsigned begin, unsigned end) {
+    if (begin == end) return;
+    constexpr GLenum index_type = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(end - begin), index_type,
+                                offset((command.IdxOffset + begin) * sizeof(ImDrawIdx)),
+                                static_cast<GLint>(command.VtxOffset));
+  };
+  const ImDrawVert* const vertices = list.VtxBuffer.Data + command.VtxOffset;
+  const ImDrawIdx* const indices = list.IdxBuffer.Data + command.IdxOffset;
+  const bool has_atlas = texture_name(command.GetTexID()) == atlas_.id();
+  unsigned drawn = 0, at = 0;
+  while (has_atlas && at + 6 <= command.ElemCount) {
+    const auto solid = find_solid(vertices, indices + at, white_, area);
+    if (!solid) {
+      at += 3;
       continue;
     }
-    const float x0 = (command.ClipRect.x - data.DisplayPos.x) * data.FramebufferScale.x;
-    const float y0 = (command.ClipRect.y - data.DisplayPos.y) * data.FramebufferScale.y;
-    const float x1 = (command.ClipRect.z - data.DisplayPos.x) * data.FramebufferScale.x;
-    const float y1 = (command.ClipRect.w - data.DisplayPos.y) * data.FramebufferScale.y;
-    if (x1 <= x0 || y1 <= y0) continue;
-    gl_->Scissor(static_cast<GLint>(x0), static_cast<GLint>(height - y1), static_cast<GLsizei>(x1 - x0),
-                 static_cast<GLsizei>(y1 - y0));
-    gl_->BindTexture(GL_TEXTURE_2D, texture_name(command.GetTexID()));
-    constexpr GLenum index_type = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-    gl_->DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), index_type,
-                                offset(command.IdxOffset * sizeof(ImDrawIdx)),
-                                static_cast<GLint>(command.VtxOffset));
+    draw_indices(drawn, at);
+    if (const PixelRectangle seen = solid->intersection(clip); !seen.empty()) {
+      const ImVec4 colour = ImGui::ColorConvertU32ToFloat4(vertices[indices[at]].col);
+      gl_->ClearColor(colour.x, colour.y, colour.z, colour.w);
+      set_scissor(seen);
+      gl_->Clear(GL_COLOR_BUFFER_BIT);
+      set_scissor(clip);
+    }
+    drawn = at += 6;
   }
+  draw_indices(drawn, command.ElemCount);
 }
 
 }  // namespace spoonbill

@@ -1,5 +1,8 @@
 // Draws the Dear ImGui interface in any GL context.
 //
+// Large opaque rectangles, such as the panel's background, are cleared instead of drawn: without a GPU,
+// blending textured triangles takes many times as long.
+//
 // The packaged ImGui backend is not used: it loads its functions from libGL, which an offscreen context does
 // not use. The program owns the ImGui context; this pass does not access it.
 #pragma once
@@ -28,6 +31,7 @@ class ImGuiPass {
   ImGuiPass(const GlFunctions& gl, Program program);
   void set_state(const ImDrawData& data) const;
   void draw_list(const ImDrawData& data, const ImDrawList& list) const;
+  void draw_command(const ImDrawData& data, const ImDrawList& list, const ImDrawCmd& command) const;
 
   const GlFunctions* gl_;
   Program program_;
@@ -35,6 +39,7 @@ class ImGuiPass {
   GlHandle vertices_;
   GlHandle indices_;
   GlHandle atlas_;
+  ImVec2 white_;  // position of a white texel in the atlas
 };
 
 }  // namespace spoonbill

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -399,6 +400,39 @@ TEST_F(Rendering, TheInterfaceDrawsText) {
   EXPECT_GT(dark, 100);
   EXPECT_LT(dark, 1000);
   EXPECT_EQ(image.pixel(150, 50)[0], 255) << "the plate is opaque white";
+}
+
+// A large rectangle covers what was drawn before it, is covered by what follows, and ends at its clip.
+TEST_F(Rendering, TheInterfacesRectanglesFillTheirPixels) {
+  if (!std::filesystem::exists(font_path)) GTEST_SKIP() << "needs fonts-roboto-unhinted";
+  const Image without = picture();
+  ImGuiContext* interface = ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.DisplaySize = {sample_width_px, sample_height_px};
+  ASSERT_TRUE(add_interface_fonts(*io.Fonts, font_path, 15.0f, 19.0f));
+  renderer_->upload_fonts(*io.Fonts);
+  ImGui::NewFrame();
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddRectFilled({30, 40}, {70, 60}, IM_COL32(0, 0, 255, 255));
+  list.PushClipRect({20, 20}, {120, 90});
+  list.AddRectFilled({10, 30}, {200, 80}, IM_COL32(10, 200, 30, 255));
+  list.PopClipRect();
+  list.AddRectFilled({50, 50}, {60, 60}, IM_COL32(255, 0, 0, 255));
+  list.AddRectFilled({80, 35}, {110, 75}, IM_COL32(255, 255, 255, 128));
+  ImGui::Render();
+  const Image with = picture(snapshot_, settings_, ImGui::GetDrawData());
+  ImGui::DestroyContext(interface);
+  const auto colour_at = [](const Image& image, int x, int y) {
+    const std::uint8_t* const pixel = image.pixel(x, y);
+    return std::array<int, 3>{pixel[0], pixel[1], pixel[2]};
+  };
+  for (const auto& [x, y] : {std::pair(20, 30), std::pair(119, 79), std::pair(35, 45), std::pair(20, 79)})
+    EXPECT_EQ(colour_at(with, x, y), (std::array<int, 3>{10, 200, 30})) << x << ", " << y;
+  for (const auto& [x, y] : {std::pair(19, 50), std::pair(120, 50), std::pair(50, 29), std::pair(50, 80)})
+    EXPECT_EQ(colour_at(with, x, y), colour_at(without, x, y)) << x << ", " << y;
+  EXPECT_EQ(colour_at(with, 55, 55), (std::array<int, 3>{255, 0, 0}));
+  EXPECT_NEAR(colour_at(with, 90, 50)[0], 133, 2);
 }
 
 TEST(InterfaceFonts, AMissingFileIsAnError) {
