@@ -156,6 +156,7 @@ Status record_script(const RecordOptions& options, Console& console) {
   input.tick_count = script->tick_count();
   input.commands = script->commands;
   input.source = options.source.string();
+  input.refines = true;
   return record_input(options, {device->specification(), std::move(document).value()},
                       script->model_file.string(), std::move(input), console);
 }

@@ -53,6 +53,7 @@ Status Lockstep::prepare_tick() {
     if (Status written = writer_->checkpoint(state_hash(*session_)); !written) return written;
   }
   if (Status applied = apply_due_commands(); !applied) return applied;
+  if (Status refined = refine_when_due(); !refined) return refined;
   is_prepared_ = true;
   return {};
 }
@@ -81,11 +82,27 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
+Status Lockstep::apply_and_record(const Command& command) {
+  if (Status applied = apply_request(*session_, command); !applied) return applied;
+  return writer_ != nullptr ? writer_->command(command_to_json(command)) : Status();
+}
+
 // Resets the proxy and records the reset, so that the recording replays without the device.
 Status Lockstep::reset_proxy() {
-  const Command command = ResetProxy{};
-  if (Status applied = session_->simulation.apply(command); !applied) return applied;
-  return writer_ != nullptr ? writer_->command(command_to_json(command)) : Status();
+  return apply_and_record(ResetProxy{});
+}
+
+Status Lockstep::refine_when_due() {
+  if (!input_.refines) return {};
+  if (!refinement_) {
+    refinement_ = session_->simulation.wanted_refinement();
+    refinement_tick_ = tick_ + refinement_ticks;
+    return {};
+  }
+  if (tick_ < refinement_tick_) return {};
+  const RefineKnots refinement = *std::exchange(refinement_, std::nullopt);
+  // An undo may have given the body fewer knots since, and then it is no longer wanted.
+  return session_->simulation.wanted_refinement() ? apply_and_record(refinement) : Status();
 }
 
 Status Lockstep::run_tick() {

@@ -15,6 +15,9 @@ namespace spoonbill {
 
 inline constexpr std::uint64_t frames_per_second = 60;
 
+// Ticks from the measurement that a surface is behind its lattice to its refinement.
+inline constexpr std::uint64_t refinement_ticks = 32;
+
 // Returns the number of ticks before frame `frame`.
 constexpr std::uint64_t frame_tick(std::uint64_t frame) {
   return frame * 1000 / frames_per_second;
@@ -34,6 +37,9 @@ struct LockstepInput {
   std::optional<Checkpoint> expected_end;
   std::uint64_t missed = 0;  // ticks that the replayed live recording had missed; copied to the new recording
   std::string source;        // names the input in messages
+  // True if the program refines surfaces by itself where they stay behind their lattices: refinement_ticks
+  // after the tick that has found this. False for recordings, which contain the refinements as commands.
+  bool refines = false;
   // Called after each tick, before the commands that follow it; may be empty. An error ends the run.
   std::function<Status()> after_tick = {};
 };
@@ -63,6 +69,9 @@ class Lockstep {
   Status apply_due_commands();
   Status run_tick();
   Status reset_proxy();
+  // Applies a command and records it.
+  Status apply_and_record(const Command& command);
+  Status refine_when_due();
 
   Session* session_;
   LockstepInput input_;
@@ -71,6 +80,9 @@ class Lockstep {
   std::uint64_t tick_ = 0;
   std::size_t next_command_ = 0;
   std::size_t next_expected_ = 0;
+  // Refinement under way, and the tick at which it is due.
+  std::optional<RefineKnots> refinement_;
+  std::uint64_t refinement_tick_ = 0;
   bool is_prepared_ = false;  // true if the commands of tick_ are applied
 };
 

@@ -112,11 +112,6 @@ std::string make_mark_name(const std::string& text) {
 
 namespace {
 
-bool changes_shape_meaning(const Command& command) {
-  return std::holds_alternative<PlacePlane>(command) || std::holds_alternative<RemovePlanes>(command) ||
-         std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command);
-}
-
 // Largest number of requested files that wait to be written, and largest number of different documents saved
 // at one tick. The limits keep a recording from filling the memory.
 constexpr std::size_t waiting_marks_limit = 1000;
@@ -126,9 +121,8 @@ struct RequestApplier {
   Session& session;
 
   Status operator()(const Command& command) {
-    if (Status applied = session.simulation.apply(command); !applied) return applied;
-    if (changes_shape_meaning(command)) session.history.clear(session.simulation);
-    return {};
+    if (replaces_build(command)) return session.history.apply(session.simulation, command);
+    return session.simulation.apply(command);
   }
   Status operator()(const UndoStroke&) { return session.history.undo(session.simulation); }
   Status operator()(const RedoStroke&) { return session.history.redo(session.simulation); }
@@ -190,7 +184,7 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   if (!view) return view.error();
   auto simulation = Simulation::make(document.scene, set, watch);
   if (!simulation) return simulation.error().in(source);
-  StrokeHistory history(simulation.value());
+  EditHistory history(simulation.value());
   std::vector<BodyMass> masses;
   for (const Body& body : document.scene.bodies) masses.push_back(mass_of_session(body));
   return Session{document.name,
@@ -282,13 +276,15 @@ Status apply_request(Session& session, const Request& request) {
 
 bool needs_rebuild(const Session& session, const Request& request) {
   if (std::holds_alternative<MarkFile>(request)) return true;
+  if (std::holds_alternative<UndoStroke>(request)) return session.history.undo_needs_build();
+  if (std::holds_alternative<RedoStroke>(request)) return session.history.redo_needs_build();
+  if (std::holds_alternative<CancelStroke>(request)) return session.history.cancel_needs_build();
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
   // A solid tool may be soft, so a change from or to a solid tool can change the size of snapshots.
   const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
-  return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
-         changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command) ||
+  return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) || replaces_build(*command) ||
          std::holds_alternative<MoveBody>(*command);
 }
 
@@ -321,6 +317,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.sculpting = scene.sculpting;
   facts.ground = scene.ground;
   facts.symmetry = scene.symmetry;
+  facts.wanted_refinement = session.simulation.wanted_refinement();
   facts.can_undo = session.history.can_undo();
   facts.can_redo = session.history.can_redo();
   facts.in_stroke = session.history.in_stroke();

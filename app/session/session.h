@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/session/stroke_history.h"
+#include "app/session/edit_history.h"
 #include "app/session/view_choice.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
@@ -73,7 +73,7 @@ struct Session {
   std::string title;
   Simulation simulation;
   CouplingState coupling;
-  StrokeHistory history;
+  EditHistory history;
   ViewChoice view;
   std::vector<BodyMass> masses = {};  // masses of the document's bodies; sculpting does not change them
 
@@ -138,6 +138,7 @@ struct SessionFacts {
   Sculpting sculpting;
   Symmetry symmetry;
   std::optional<Ground> ground = {};
+  std::optional<RefineKnots> wanted_refinement = {};  // see Simulation::wanted_refinement()
   bool can_undo = false;
   bool can_redo = false;
   bool in_stroke = false;

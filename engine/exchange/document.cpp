@@ -305,6 +305,18 @@ void add_body_index(int body, Json& json) {
   if (body != 0) json["body"] = body;
 }
 
+// Reads an optional range of a surface's parameter, [low, high].
+std::optional<Range<double>> read_parameter_range(FieldReader& reader, const char* field) {
+  if (!reader.has(field)) return std::nullopt;
+  const Json& ends = reader.list(field, {2, 2});
+  if (!reader.status().ok()) return std::nullopt;
+  if (!ends[0].is_number() || !ends[1].is_number() || !(ends[0].get<double>() <= ends[1].get<double>())) {
+    reader.refuse(field, "must be two numbers, [low, high]");
+    return std::nullopt;
+  }
+  return Range<double>{ends[0].get<double>(), ends[1].get<double>()};
+}
+
 // Reads the fields of a command other than its name.
 template <class CommandWithoutFields>
 void read_content(FieldReader&, CommandWithoutFields&) {}
@@ -326,6 +338,8 @@ void read_content(FieldReader& reader, SetSymmetry& command) {
 }
 void read_content(FieldReader& reader, RefineKnots& command) {
   command.body = read_body_index(reader);
+  command.u = read_parameter_range(reader, "u");
+  command.v = read_parameter_range(reader, "v");
 }
 void read_content(FieldReader& reader, TurnBody& command) {
   read_fields(reader, command);
@@ -361,6 +375,8 @@ void add_content(const SetSymmetry& command, Json& json) {
 }
 void add_content(const RefineKnots& command, Json& json) {
   add_body_index(command.body, json);
+  if (command.u) json["u"] = {command.u->low, command.u->high};
+  if (command.v) json["v"] = {command.v->low, command.v->high};
 }
 void add_content(const TurnBody& command, Json& json) {
   add_fields(command, json);

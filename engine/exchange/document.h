@@ -142,7 +142,7 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}
-//   {"command": "refine_knots", and optionally "body"}
+//   {"command": "refine_knots", and optionally "body", "u": [low, high], "v": [low, high]}
 //   {"command": "turn_body", "point_mm", "axis", "angle_deg", "speed_deg_per_s", and optionally "body"}
 //   {"command": "lower_body", "speed_m_per_s", and optionally "body"}
 //   {"command": "move_body", "point_mm", "waypoints": [{"at_s", "moved_mm", "axis", "angle_deg"}, ...], and

@@ -69,6 +69,7 @@ void add_fields(const Object& object, Json& json) {
     if (!field.applies(object) || (form.partner != nullptr && !json.contains(form.partner))) continue;
     const auto add = [&](auto member) {
       if constexpr (std::is_same_v<decltype(member), ChoiceMember<Object>>) {
+        if (form.optional && member.get(object) == member.get(default_object)) return;
         json[form.name] = form.choices[member.get(object)];
       } else if (!form.optional || object.*member != default_object.*member) {
         json[form.name] = value_to_json(form, object.*member);

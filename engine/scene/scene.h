@@ -172,10 +172,13 @@ struct ResetProxy {};
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
-// Inserts a knot along u and a knot along v at the point where the body's surface follows its lattice least
-// closely. The shape does not change, but later strokes have more control points to move.
+// Inserts knots in a body's surface where it is behind its lattice. The shape does not change at that tick;
+// the surface then catches up with the lattice. Without ranges, a knot along u and a knot along v are
+// inserted at the point that is farthest behind. With ranges of the parameters, the elements that overlap
+// them are halved.
 struct RefineKnots {
   int body = 0;  // index in the scene
+  std::optional<Range<double>> u = {}, v = {};
 };
 
 // Turns a fixed body, or the hand that holds a rigid one, about an axis. It starts and stops within

@@ -26,9 +26,19 @@ namespace spoonbill {
 
 enum class ToolKind { point, sphere, solid };
 enum class ToolAction { push, pull, smooth };
+// How far a stroke that pushes or pulls reaches. `whole`: the material deforms, and what is not fixed may
+// move and bend. `local`: the material near the touched point is shaped, and everything else keeps its place.
+enum class ToolReach { whole, local };
+
+// Behaviour of a tool that pushes while the button is down. `hold`: it keeps hold of what it
+// touches and does not slide off sideways; along the normal it still only pushes. `slide`: it slides.
+enum class ToolGlide { hold, slide };
 
 // Names of the tool kinds, in files and as labels.
 inline constexpr const char* tool_kind_names[] = {"point", "sphere", "solid"};
+
+inline constexpr const char* tool_reach_names[] = {"whole", "local"};
+inline constexpr const char* tool_glide_names[] = {"hold", "slide"};
 
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
 inline constexpr Range<int> tool_substeps_range{1, 8};
@@ -64,6 +74,7 @@ struct ToolActionRow {
 
 inline constexpr ToolParameter radius_parameter{"radius_mm", tool_radius_range_m};
 inline constexpr ToolParameter substeps_parameter{"substeps", {1.0, 8.0}};
+inline constexpr ToolParameter local_radius_parameter{"local_radius_mm", tool_radius_range_m};
 
 // The actions, in the order of the enumeration ToolAction.
 inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
@@ -74,7 +85,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
      .grips = false,
      .allows_soft_tool = true,
      .inverse = ToolAction::pull,
-     .parameters = {radius_parameter, substeps_parameter},
+     .parameters = {radius_parameter, substeps_parameter, local_radius_parameter},
      .keys = {{{"1", ToolKind::sphere, "Sphere that pushes"}, {"3", ToolKind::point, "Point that pushes"}}}},
     {.action = ToolAction::pull,
      .name = "pull",
@@ -83,7 +94,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
      .grips = true,
      .allows_soft_tool = false,
      .inverse = ToolAction::push,
-     .parameters = {radius_parameter, substeps_parameter},
+     .parameters = {radius_parameter, substeps_parameter, local_radius_parameter},
      .keys = {{{"2", ToolKind::sphere, "Sphere that pulls"}, {"4", ToolKind::point, "Point that pulls"}}}},
     {.action = ToolAction::smooth,
      .name = "smooth",
@@ -181,7 +192,20 @@ struct Tool {
   int substeps = 6;  // substeps per tick, 1 to 8; with more substeps, bodies respond faster
   // Body of the tool. Required for the kind `solid`; may be kept while another kind is in use.
   std::shared_ptr<const ToolBody> body = {};
+  ToolReach reach = ToolReach::whole;
+  ToolGlide sideways = ToolGlide::hold;
+  // Radius of a local stroke along the surface; 0 chooses 1.5 times the radius of the tool's contact.
+  double local_radius_m = 0.0;
+
+  bool is_local() const { return reach == ToolReach::local && action != ToolAction::smooth; }
 };
+
+// Returns the radius of the contact of a tool with a local reach. A tool that pulls holds what is inside its
+// radius. A sphere that pushes touches a disc of 0.6 times its radius when it is in by a fifth of its radius.
+inline double contact_radius_m(const Tool& tool) {
+  const double radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
+  return tool.action == ToolAction::pull ? radius_m : 0.6 * radius_m;
+}
 
 // Returns the range that the tool's action accepts for a field; `any` if the action does not use the field.
 // `field` is the field's name in files.
@@ -205,6 +229,11 @@ inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
         .with_range_by([](const Tool& tool) {
           return range_in_action(tool, "substeps", {1.0, 8.0});
         }),
+    choice_field<&Tool::reach>("reach", tool_reach_names).optional(),
+    choice_field<&Tool::sideways>("sideways", tool_glide_names).optional(),
+    number_field("local_radius_mm", &Tool::local_radius_m, tool_radius_range_m, FieldUnit::metre)
+        .optional()
+        .with_slider({"Local radius", {0.001, 0.05}, true}),
 });
 
 // Returns an error that names the first field at fault.

@@ -94,10 +94,25 @@ double find_element_midpoint(const KnotVector& knots, double parameter) {
   return 0.5 * (*(next - 1) + *next);
 }
 
-Result<Surface> halve_element(const Surface& surface, double u, double v) {
-  const Result<Surface> finer = insert_knot(surface, Direction::u, find_element_midpoint(surface.u, u), 1);
+// Inserts a knot at the midpoint of each element that contains one of the parameters.
+Result<Surface> halve_elements(Surface surface, Direction direction, std::span<const double> parameters) {
+  const KnotVector knots = direction == Direction::u ? surface.u : surface.v;
+  std::vector<double> midpoints;
+  for (const double parameter : parameters) midpoints.push_back(find_element_midpoint(knots, parameter));
+  std::sort(midpoints.begin(), midpoints.end());
+  midpoints.erase(std::unique(midpoints.begin(), midpoints.end()), midpoints.end());
+  for (const double midpoint : midpoints) {
+    Result<Surface> finer = insert_knot(surface, direction, midpoint, 1);
+    if (!finer.ok()) return finer.error();
+    surface = std::move(finer).value();
+  }
+  return surface;
+}
+
+Result<Surface> halve_elements(const Surface& surface, std::span<const double> u, std::span<const double> v) {
+  Result<Surface> finer = halve_elements(surface, Direction::u, u);
   if (!finer.ok()) return finer.error();
-  return insert_knot(finer.value(), Direction::v, find_element_midpoint(surface.v, v), 1);
+  return halve_elements(std::move(finer).value(), Direction::v, v);
 }
 
 // Returns one byte per column of control points: 1 if its basis function is nonzero in a fixed stretch of v.
@@ -309,7 +324,17 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   mapping.evaluator_.emplace_back(mapping.nested_->grid, set);
   mapping.followed_.resize(static_cast<std::size_t>(mapping.nested_->grid.rows()) *
                            static_cast<std::size_t>(mapping.nested_->grid.columns()));
+  const std::vector<double>& columns = mapping.nested_->grid.v.parameters;
+  const auto index_of = [&](auto place) { return static_cast<int>(place - columns.begin()); };
+  const bool fixes_low = fixed.low_end > v.domain_start(), fixes_high = fixed.high_start < v.domain_end();
+  mapping.free_columns_begin_ =
+      fixes_low ? index_of(std::upper_bound(columns.begin(), columns.end(), fixed.low_end)) : 0;
+  mapping.free_columns_end_ =
+      fixes_high ? index_of(std::lower_bound(columns.begin(), columns.end(), fixed.high_start))
+                 : static_cast<int>(columns.size());
   mapping.embed(lattice);
+  mapping.compute_base_displacements();
+  mapping.start_catching_up(lattice);
   return mapping;
 }
 
@@ -354,13 +379,53 @@ void BodyMapping::embed(const SpringLattice& lattice) {
     control_[axis].assign(rest_.net.size(), 0.0f);
   }
   base_moves_.assign(4 * samples, 0.0f);
-  sample_displacements(lattice);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t s = 0; s < samples; ++s) {
-      base_moves_[4 * s + axis] = sample_[axis][s / columns_ * stride_ + s % columns_];
+  reached_moves_.assign(4 * samples, 0.0f);
+}
+
+void BodyMapping::compute_base_displacements() {
+  if (base_.net.x == rest_.net.x && base_.net.y == rest_.net.y && base_.net.z == rest_.net.z) return;
+  const Grid& grid = nested_->grid;
+  for (int i = 0; i < grid.rows(); ++i) {
+    for (int j = 0; j < grid.columns(); ++j) {
+      const std::size_t s = static_cast<std::size_t>(i) * columns_ + static_cast<std::size_t>(j);
+      const auto twin = static_cast<std::size_t>(find_twin(i, j));
+      if (twin != s) {
+        std::copy_n(reached_moves_.begin() + static_cast<std::ptrdiff_t>(4 * twin), 4,
+                    reached_moves_.begin() + static_cast<std::ptrdiff_t>(4 * s));
+        continue;
+      }
+      const double u = grid.u.parameters[i], v = grid.v.parameters[j];
+      const Vector3 moved = position(base_, u, v) - position(rest_, u, v);
+      for (int axis = 0; axis < 3; ++axis) reached_moves_[4 * s + axis] = static_cast<float>(moved[axis]);
     }
   }
-  sample_displacements(lattice);  // sets the displacements since make() to zero
+}
+
+void BodyMapping::start_catching_up(const SpringLattice& lattice) {
+  std::fill(base_moves_.begin(), base_moves_.end(), 0.0f);
+  sample_displacements(lattice);
+  const std::array<const float*, 3> followed{followed_.x.data(), followed_.y.data(), followed_.z.data()};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t s = 0; s < embedding_.size(); ++s) {
+      base_moves_[4 * s + axis] = sample_[axis][s / columns_ * stride_ + s % columns_] - followed[axis][s];
+    }
+  }
+  catch_up_ticks_left_ = base_moves_ == reached_moves_ ? 0 : catch_up_ticks;
+  sample_displacements(lattice);
+}
+
+void BodyMapping::catch_up() {
+  if (catch_up_ticks_left_ == 0) return;
+  const float part = 1.0f / static_cast<float>(catch_up_ticks_left_);
+  if (--catch_up_ticks_left_ == 0) return finish_catching_up();
+  for (std::size_t k = 0; k < base_moves_.size(); ++k) {
+    base_moves_[k] += part * (reached_moves_[k] - base_moves_[k]);
+  }
+}
+
+void BodyMapping::finish_catching_up() {
+  catch_up_ticks_left_ = 0;
+  std::copy(reached_moves_.begin(), reached_moves_.end(), base_moves_.begin());
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {
@@ -404,32 +469,120 @@ void BodyMapping::update(const SpringLattice& lattice) {
   for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 
-void BodyMapping::measure_residual() {
+std::array<double, 2> BodyMapping::element_lengths_m(double u, double v) const {
+  const auto ends_of = [](const KnotVector& knots, double parameter) {
+    const std::vector<double>& extended = knots.extended_knots();
+    const auto span = static_cast<std::size_t>(knots.find_span(parameter));
+    return std::array<double, 2>{extended[span], extended[span + 1]};
+  };
+  const auto u_ends = ends_of(rest_.u, u), v_ends = ends_of(rest_.v, v);
+  return {(position(rest_, u_ends[1], v) - position(rest_, u_ends[0], v)).norm(),
+          (position(rest_, u, v_ends[1]) - position(rest_, u, v_ends[0])).norm()};
+}
+
+void BodyMapping::measure_residual(double tolerance_m) {
   const Grid& grid = nested_->grid;
   evaluator_.front().points(control_[0].data(), control_[1].data(), control_[2].data(), followed_);
   double largest = 0.0, sum = 0.0;
-  std::size_t worst = 0;
-  for (std::size_t s = 0; s < embedding_.size(); ++s) {
-    const std::size_t from = s / columns_ * stride_ + s % columns_;
-    const Vector3 residual_m(static_cast<double>(sample_[0][from] - followed_.x[s]),
-                             static_cast<double>(sample_[1][from] - followed_.y[s]),
-                             static_cast<double>(sample_[2][from] - followed_.z[s]));
-    sum += residual_m.squaredNorm();
-    if (residual_m.squaredNorm() <= largest) continue;
-    largest = residual_m.squaredNorm();
-    worst = s;
+  int worst_row = 0, worst_column = 0, count = 0;
+  int first_row = grid.rows(), last_row = -1, first_column = grid.columns(), last_column = -1;
+  for (int i = 0; i < grid.rows(); ++i) {
+    for (int j = free_columns_begin_; j < free_columns_end_; ++j, ++count) {
+      const std::size_t s = static_cast<std::size_t>(i) * columns_ + static_cast<std::size_t>(j);
+      const std::size_t from = static_cast<std::size_t>(i) * stride_ + static_cast<std::size_t>(j);
+      const float* const base = base_moves_.data() + 4 * s;
+      const float* const reached = reached_moves_.data() + 4 * s;
+      const Vector3 residual_m(
+          static_cast<double>(sample_[0][from] - followed_.x[s] + (base[0] - reached[0])),
+          static_cast<double>(sample_[1][from] - followed_.y[s] + (base[1] - reached[1])),
+          static_cast<double>(sample_[2][from] - followed_.z[s] + (base[2] - reached[2])));
+      const double square = residual_m.squaredNorm();
+      sum += square;
+      if (square > tolerance_m * tolerance_m) {
+        first_row = std::min(first_row, i);
+        last_row = i;
+        first_column = std::min(first_column, j);
+        last_column = std::max(last_column, j);
+      }
+      if (square <= largest) continue;
+      largest = square;
+      worst_row = i;
+      worst_column = j;
+    }
   }
-  residual_ = {std::sqrt(largest), std::sqrt(sum / static_cast<double>(embedding_.size())),
-               grid.u.parameters[worst / columns_], grid.v.parameters[worst % columns_]};
+  residual_ = {std::sqrt(largest), std::sqrt(sum / std::max(count, 1)), grid.u.parameters[worst_row],
+               grid.v.parameters[worst_column]};
+  if (last_row < 0) return;
+  residual_.u_range = {grid.u.parameters[first_row], grid.u.parameters[last_row]};
+  residual_.v_range = {grid.v.parameters[first_column], grid.v.parameters[last_column]};
 }
 
-Result<BodyMapping> BodyMapping::refine_at(double u, double v, const SpringLattice& lattice,
-                                           const std::vector<FixingPlane>& planes) const {
-  const Result<Surface> finer_rest = halve_element(rest_, u, v);
+Result<BodyMapping> BodyMapping::refined(std::span<const double> u, std::span<const double> v,
+                                         const SpringLattice& lattice,
+                                         const std::vector<FixingPlane>& planes) const {
+  const Result<Surface> finer_rest = halve_elements(rest_, u, v);
   if (!finer_rest.ok()) return finer_rest.error();
-  const Result<Surface> finer = halve_element(current_, u, v);
+  const Result<Surface> finer = halve_elements(base_, u, v);
   if (!finer.ok()) return finer.error();
-  return make(finer_rest.value(), finer.value(), lattice, planes, set_, contact_cell_m_);
+  Result<BodyMapping> made = make(finer_rest.value(), finer.value(), lattice, planes, set_, contact_cell_m_);
+  if (!made.ok()) return made;
+  const Grid& grid = made->nested_->grid;
+  made->coarser_u_ = blending_matrix(rest_.u, grid.u.parameters, 0);
+  made->coarser_v_ = blending_matrix(rest_.v, grid.v.parameters, 0);
+  made->half_.resize(static_cast<std::size_t>(rest_.net.columns));
+  return made;
+}
+
+void BodyMapping::adopt(const BodyMapping& coarser, const SpringLattice& lattice) {
+  SPOONBILL_ASSERT(coarser_u_ && coarser_v_);
+  const BlendingMatrix &u = *coarser_u_, &v = *coarser_v_;
+  const std::array<std::vector<float>*, 3> followed{&followed_.x, &followed_.y, &followed_.z};
+  const auto columns = static_cast<std::size_t>(u.rows > 0 ? coarser.rest_.net.columns : 0);
+  SPOONBILL_ASSERT(half_.size() == columns && v.columns == static_cast<int>(columns));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<float>& control = coarser.control_[axis];
+    for (int i = 0; i < u.rows; ++i) {
+      std::fill(half_.begin(), half_.end(), 0.0);
+      for (int k = 0; k < u.bandwidth; ++k) {
+        const double weight = u.values[static_cast<std::size_t>(i * u.bandwidth + k)];
+        const float* const row = control.data() + static_cast<std::size_t>(u.column(i, k)) * columns;
+        for (std::size_t c = 0; c < columns; ++c) half_[c] += weight * static_cast<double>(row[c]);
+      }
+      for (int j = 0; j < v.rows; ++j) {
+        double moved = 0.0;
+        for (int k = 0; k < v.bandwidth; ++k) {
+          moved += v.values[static_cast<std::size_t>(j * v.bandwidth + k)] *
+                   half_[static_cast<std::size_t>(v.column(j, k))];
+        }
+        (*followed[axis])[static_cast<std::size_t>(i) * columns_ + static_cast<std::size_t>(j)] =
+            static_cast<float>(moved);
+      }
+    }
+  }
+  start_catching_up(lattice);
+  update(lattice);
+}
+
+std::vector<int> BodyMapping::find_samples_of(const BodyMapping& coarser) const {
+  // Halving an element keeps its samples; rounding may shift their parameters.
+  const auto find_places = [](const std::vector<double>& fine, const std::vector<double>& coarse) {
+    std::vector<int> places;
+    for (const double parameter : coarse) {
+      const auto after = std::lower_bound(fine.begin(), fine.end(), parameter);
+      const bool is_before =
+          after == fine.end() || (after != fine.begin() && parameter - *(after - 1) < *after - parameter);
+      places.push_back(static_cast<int>(after - fine.begin()) - (is_before ? 1 : 0));
+    }
+    return places;
+  };
+  const Grid &fine = nested_->grid, &coarse = coarser.nested_->grid;
+  const std::vector<int> rows = find_places(fine.u.parameters, coarse.u.parameters);
+  const std::vector<int> columns = find_places(fine.v.parameters, coarse.v.parameters);
+  std::vector<int> samples;
+  for (const int row : rows) {
+    for (const int column : columns) samples.push_back(row * fine.columns() + column);
+  }
+  return samples;
 }
 
 EmbeddedPoint BodyMapping::at(double u, double v) const {

@@ -3,9 +3,12 @@
 // outside the cells.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -13,6 +16,7 @@
 #include "engine/base/containers.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
+#include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/collapsed_edges.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
@@ -29,12 +33,18 @@
 namespace spoonbill {
 
 // Difference between the displacements of a surface's samples and the displacements that the control net
-// reproduces: the largest and the root mean square difference, and the parameters (u, v) of the largest.
+// reproduces: the largest and the root mean square difference, and the parameters (u, v) of the largest. The
+// ranges contain the samples beyond a tolerance; they are empty if there are none.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
   double u = 0.0, v = 0.0;
+  std::optional<Range<double>> u_range = {}, v_range = {};
 };
+
+// Ticks in which a surface catches up with its lattice after its knots have changed. A sudden catch would
+// move the surface under the tool and could be felt.
+inline constexpr int catch_up_ticks = 64;
 
 // Mapping to a B-spline surface. Surface samples that are embedded in the lattice move with the nodes, and
 // DisplacementRefit moves the control points with the samples. Owned by the simulation. update() and
@@ -42,7 +52,7 @@ struct MappingResidual {
 class BodyMapping {
  public:
   // Makes the mapping. `rest` is the surface from which the lattice's rest shape was made. `current` is the
-  // surface for the lattice's present displacements, with the same knots.
+  // surface for the lattice's present displacements, with the same knots; it may be behind the lattice.
   //
   // The part of the surface wholly behind a plane stays exactly fixed: knots are inserted at its edge, which
   // changes no shape, and the control points that affect it are fixed. Only parts at an open end of v are
@@ -61,15 +71,31 @@ class BodyMapping {
   // Moves current() by the nodes' displacement since make().
   void update(const SpringLattice& lattice);
 
-  // Residual of the displacements since make(), as of the last measure_residual().
-  const MappingResidual& residual() const { return residual_; }
-  void measure_residual();
+  // A mapping starts with the shape of current(). If the lattice has moved away from this shape, the surface
+  // then catches up in catch_up_ticks calls of catch_up(), one a tick. finish_catching_up() ends this at
+  // once. catch_up_ticks_left() returns how many calls are left. Neither allocates; update() must follow.
+  void catch_up();
+  void finish_catching_up();
+  int catch_up_ticks_left() const { return catch_up_ticks_left_; }
 
-  // Returns the mapping of a refined surface, with a new knot in each direction, at the midpoint of the
-  // element that contains u or v. The surface gains control points there and keeps its shape up to rounding.
+  // Difference between the lattice and the surface where the surface is free to move, as of the last
+  // measure_residual().
+  const MappingResidual& residual() const { return residual_; }
+  void measure_residual(double tolerance_m = std::numeric_limits<double>::infinity());
+  // Returns the lengths at rest of the element that contains (u, v), along u and along v through this point.
+  std::array<double, 2> element_lengths_m(double u, double v) const;
+
+  // Returns the mapping of a refined surface: a knot at the midpoint of each element that contains one of the
+  // parameters `u` or `v`. It depends only on what stays the same between make() and the mapping's end, so
+  // another thread may call this function while this mapping moves. Call adopt() before the first update().
   // The caller must check the new number of control points.
-  Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
-                                const std::vector<FixingPlane>& planes) const;
+  Result<BodyMapping> refined(std::span<const double> u, std::span<const double> v,
+                              const SpringLattice& lattice, const std::vector<FixingPlane>& planes) const;
+  // Takes over the present shape of the mapping that refined() was called for, up to rounding, and then
+  // catches up with the lattice. Allocates nothing.
+  void adopt(const BodyMapping& coarser, const SpringLattice& lattice);
+  // Returns the index here of each sample of the mapping that refined() was called for. Allocates.
+  std::vector<int> find_samples_of(const BodyMapping& coarser) const;
 
   // sample() returns the embedding of a grid sample. at() returns the embedding of any point, blended from
   // the embeddings of the samples around the point.
@@ -106,6 +132,11 @@ class BodyMapping {
   };
   // Computes the displacement of each sample since make().
   void sample_displacements(const SpringLattice& lattice);
+  // Computes the displacements that the samples of base_ have from rest_.
+  void compute_base_displacements();
+  // Starts at a shape of the surface that differs from base_ by these displacements at the samples, stored in
+  // followed_.
+  void start_catching_up(const SpringLattice& lattice);
 
   InstructionSet set_;
   Surface rest_, base_, current_;
@@ -117,7 +148,15 @@ class BodyMapping {
   std::vector<Vector3> embedded_rest_m_;
   std::vector<CellWeights> cell_weights_;  // for each sample, the same weights as in embedding_
   AlignedVector<float> node_moves_;        // displacements of the nodes: x, y, z and 0 for each
-  AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
+  // Displacements of the samples that base_ stands for: x, y, z and 0 for each. Until the surface has caught
+  // up, they differ from those of base_, reached_moves_.
+  AlignedVector<float> base_moves_, reached_moves_;
+  int catch_up_ticks_left_ = 0;
+  // First and past-the-end column of the samples where the surface is free to move.
+  int free_columns_begin_ = 0, free_columns_end_ = 0;
+  // Blending matrices of the coarser surface at the samples, only after refined().
+  std::optional<BlendingMatrix> coarser_u_, coarser_v_;
+  std::vector<double> half_;  // working memory of adopt()
   // Displacements of the samples since make() by axis. Each of the grid's rows has stride_ values, of which
   // the first columns_ are used.
   AlignedVector<float> sample_[3];

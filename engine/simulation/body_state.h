@@ -100,6 +100,8 @@ struct BodyState {
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
   bool is_gone = false;  // see Simulation::is_gone()
+  // True if the surface is behind the lattice by more than the tolerance, and no refinement brings it closer.
+  bool is_refined_enough = false;
 
   // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
   double fastest_m_per_s() const { return lattice.fastest_m_per_s(); }

@@ -41,6 +41,19 @@ BodyContacts make_contact_buffer() {
   return BodyContacts(capacity);
 }
 
+void make_contacts(Simulation::State& state) {
+  state.tool.contact = ToolContact(state.scene_bodies(), state.model);
+  state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
+  state.pairs = make_pairs(state.bodies);
+  state.self = make_self_contacts(state.bodies);
+  state.between = make_contact_buffer();
+  state.searched = SearchedShapes(state.bodies);
+  state.ground_contact =
+      BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
+  state.rigid_ground = make_rigid_ground_contacts(state.scene_bodies());
+  state.sampled_ground = make_sampled_ground_contacts(state.scene_bodies());
+}
+
 namespace {
 
 // Returns the planes that fix nodes of the body: none if the body is rigid.
@@ -202,6 +215,42 @@ Status CommandApplier::operator()(const KeepShape&) {
   return {};
 }
 
+namespace {
+
+// Returns a parameter in each element that overlaps the range; none without a range.
+std::vector<double> elements_in(const KnotVector& knots, const std::optional<Range<double>>& range) {
+  std::vector<double> found;
+  if (!range) return found;
+  const std::vector<double> breaks = knots.breakpoints();
+  for (std::size_t e = 0; e + 1 < breaks.size(); ++e) {
+    const bool overlaps = breaks[e] <= range->high && breaks[e + 1] >= range->low;
+    if (overlaps) found.push_back(0.5 * (breaks[e] + breaks[e + 1]));
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<BodyMapping> CommandApplier::make_refined(const RefineKnots& command) const {
+  const BodyState& body = state.bodies[static_cast<std::size_t>(command.body)];
+  const BodyMapping& mapping = body.mapping();
+  std::vector<double> u = elements_in(mapping.rest().u, command.u);
+  std::vector<double> v = elements_in(mapping.rest().v, command.v);
+  if (!command.u && !command.v) {
+    u = {mapping.residual().u};
+    v = {mapping.residual().v};
+  }
+  for (const auto& [knots, added] : {std::pair{&mapping.rest().u, &u}, std::pair{&mapping.rest().v, &v}}) {
+    if (Status status = check_range("refine_knots: control points in one direction",
+                                    knots->control_point_count() + static_cast<int>(added->size()),
+                                    control_point_count_range);
+        !status.ok()) {
+      return status.error();
+    }
+  }
+  return mapping.refined(u, v, body.lattice, planes_through(body, state.scene.planes));
+}
+
 Status CommandApplier::operator()(const RefineKnots& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t index = static_cast<std::size_t>(command.body);
@@ -210,25 +259,18 @@ Status CommandApplier::operator()(const RefineKnots& command) {
   }
   BodyMapping& mapping = state.bodies[index].mapping();
   mapping.measure_residual();
-  const MappingResidual& residual = mapping.residual();
-  if (!(residual.largest_m > 0.0)) {
+  if (!command.u && !command.v && !(mapping.residual().largest_m > 0.0)) {
     return Error{ErrorCode::inconsistent,
                  "refine_knots: nothing moved since the knots were last changed; shape the body first"};
   }
-  Result<BodyMapping> finer = mapping.refine_at(residual.u, residual.v, state.bodies[index].lattice,
-                                                planes_through(state.bodies[index], state.scene.planes));
+  Result<BodyMapping> finer = make_refined(command);
   if (!finer.ok()) return finer.error();
-  for (const KnotVector* knots : {&finer->rest().u, &finer->rest().v}) {
-    if (Status status = check_range("refine_knots: control points in one direction",
-                                    knots->control_point_count(), control_point_count_range);
-        !status.ok()) {
-      return status;
-    }
-  }
+  finer->adopt(mapping, state.bodies[index].lattice);
+  const std::vector<int> new_sample = finer->find_samples_of(mapping);
   mapping = std::move(finer).value();
   state.scene.bodies[index].surface = mapping.current();
-  release();
-  make_contacts();
+  state.wanted_refinement.reset();
+  refit_contacts(command.body, new_sample);
   return {};
 }
 
@@ -309,7 +351,7 @@ void CommandApplier::set_skins(std::vector<SkinMapping> skins) {
     state.bodies[b].skin = std::move(skins[b]);
     if (!state.bodies[b].mesh()) state.scene.bodies[b].surface = state.bodies[b].mapping().current();
   }
-  make_contacts();
+  make_contacts(state);
 }
 
 // Replaces the model of the previous solid tool, and the body of a previous soft tool at the end of the list
@@ -320,20 +362,15 @@ void CommandApplier::adopt_model(ToolModel model) {
   model.soft.reset();
   if (state.model.triangles) state.retired_triangles.push_back(std::move(state.model.triangles));
   state.model = std::move(model);
-  make_contacts();
+  make_contacts(state);
 }
 
-void CommandApplier::make_contacts() {
-  state.tool.contact = ToolContact(state.scene_bodies(), state.model);
-  state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
-  state.pairs = make_pairs(state.bodies);
-  state.self = make_self_contacts(state.bodies);
-  state.between = make_contact_buffer();
-  state.searched = SearchedShapes(state.bodies);
-  state.ground_contact =
-      BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
-  state.rigid_ground = make_rigid_ground_contacts(state.scene_bodies());
-  state.sampled_ground = make_sampled_ground_contacts(state.scene_bodies());
+// Makes the contacts after a body's surface was refined. The tool keeps its grip and its pushes.
+void CommandApplier::refit_contacts(int body, std::span<const int> new_sample) {
+  const ToolContact tool = std::move(state.tool.contact), mirrored = std::move(state.mirrored.contact);
+  make_contacts(state);
+  state.tool.contact.carry_over(tool, body, new_sample);
+  state.mirrored.contact.carry_over(mirrored, body, new_sample);
 }
 
 }  // namespace spoonbill

@@ -148,6 +148,9 @@ void Simulation::write_scene(Scene& scene) const {
   }
 }
 
+const std::optional<RefineKnots>& Simulation::wanted_refinement() const {
+  return state_->wanted_refinement;
+}
 std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> warnings;
   for (const Body& body : state_->scene.bodies) {
@@ -276,6 +279,9 @@ std::uint64_t Simulation::state_hash() const {
       body.rigid->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
     }
     if (body.lowering_m_per_s > 0.0) hash.add(body.lowering_m_per_s);
+    if (!body.mesh() && body.mapping().catch_up_ticks_left() > 0) {
+      hash.add(static_cast<std::uint64_t>(body.mapping().catch_up_ticks_left()));
+    }
     if (body.is_gone) hash.add(std::uint64_t{1});
     if (s.scene.ground && body.implicit_solver) {
       body.implicit_solver->visit_state_on_ground(
@@ -317,6 +323,30 @@ void Simulation::write_shape(ShapeState& shape) const {
   }
 }
 
+struct SimulationBuild {
+  std::vector<BodyState> states;
+  std::vector<Body> bodies;
+  std::vector<FixingPlane> planes;
+};
+
+std::shared_ptr<SimulationBuild> Simulation::copy_build() const {
+  const auto count = static_cast<std::ptrdiff_t>(state_->scene.bodies.size());
+  return std::make_shared<SimulationBuild>(SimulationBuild{
+      {state_->bodies.begin(), state_->bodies.begin() + count}, state_->scene.bodies, state_->scene.planes});
+}
+
+std::shared_ptr<SimulationBuild> Simulation::exchange_build(std::shared_ptr<SimulationBuild> build) {
+  SPOONBILL_ASSERT(build != nullptr && build->states.size() == state_->scene.bodies.size());
+  const DenormalsFlushed flushed;
+  std::swap_ranges(build->states.begin(), build->states.end(), state_->bodies.begin());
+  std::swap(build->bodies, state_->scene.bodies);
+  std::swap(build->planes, state_->scene.planes);
+  state_->wanted_refinement.reset();
+  update_inertia(*state_);
+  make_contacts(*state_);
+  return build;
+}
+
 Status Simulation::restore(const ShapeState& shape) {
   const DenormalsFlushed flushed;
   bool fits = shape.lattices.size() == state_->scene.bodies.size() &&
@@ -334,6 +364,7 @@ Status Simulation::restore(const ShapeState& shape) {
     }
     body.lowering_m_per_s = 0.0;
     if (body.solver()) body.solver()->adopt_shape(body.lattice);
+    if (!body.mesh()) body.mapping().finish_catching_up();
     body.update_skin();
   }
   state_->ground_contact.forget();
@@ -346,6 +377,22 @@ Status Simulation::restore(const ShapeState& shape) {
 }
 
 namespace {
+
+void write_local_reach(const Simulation::State& s, ToolSnapshot& tool) {
+  tool.local_radius_m = 0.0;
+  if (!s.scene.tool.is_local()) return;
+  const LocalStroke& stroke = s.tool.contact.local_stroke();
+  if (stroke.is_active()) {
+    tool.local_point_m = stroke.point_m(s.bodies[static_cast<std::size_t>(stroke.body())].lattice);
+    tool.local_radius_m = stroke.radius_m();
+    return;
+  }
+  const int body = s.tool.contact.deepest_body();
+  const CollisionResult& collision = s.tool.contact.collision(body);
+  if (!collision.found) return;
+  tool.local_point_m = collision.nearest.point_m;
+  tool.local_radius_m = choose_local_radius_m(s.scene.tool, s.bodies[static_cast<std::size_t>(body)]);
+}
 
 void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
   snapshot.symmetric = s.scene.symmetry.on;
@@ -367,6 +414,7 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   snapshot.tool.substeps = s.scene.tool.substeps;
   snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
   snapshot.tool.body = s.scene.tool.body;
+  write_local_reach(s, snapshot.tool);
   snapshot.tool.device = s.tool.hand;
   snapshot.tool.proxy = s.reaction.proxy;
   write_symmetry(s, snapshot);

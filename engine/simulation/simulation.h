@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@
 namespace spoonbill {
 
 inline constexpr double tick_s = 1e-3;
+
+// A net with this many control points is not refined by itself: moving it would take too much of a tick.
+inline constexpr int refined_control_point_limit = 2400;
 
 // See Simulation::is_gone().
 inline constexpr double gone_distance_m = 1.0;
@@ -88,6 +92,10 @@ class StateHash {
   std::uint64_t hash_ = 14695981039346656037ull;
 };
 
+// Everything that a stroke does not change and that commands replace: the bodies with their mappings,
+// lattices and solvers, materials, fixed nodes and fixing planes.
+struct SimulationBuild;
+
 class Simulation {
  public:
   // Builds grids, lattices and working memory. Refuses a scene that cannot be simulated; the error names the
@@ -124,6 +132,16 @@ class Simulation {
   void write_shape(ShapeState& shape) const;
   // Restores a shape. Fails if the shape belongs to another lattice.
   Status restore(const ShapeState& shape);
+
+  // Returns the refinement of knots that a surface needs because it is behind its lattice by more than a
+  // tolerance; empty if no surface does, or if no refinement helps. The tick finds it about every 64 ticks.
+  const std::optional<RefineKnots>& wanted_refinement() const;
+
+  // copy_build() returns a copy of the present build. exchange_build() takes a build of this simulation and
+  // returns the one that it replaces; restore() must follow. Both allocate. Neither `build` nor the results
+  // are null.
+  std::shared_ptr<SimulationBuild> copy_build() const;
+  std::shared_ptr<SimulationBuild> exchange_build(std::shared_ptr<SimulationBuild> build);
 
   // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).
   std::vector<std::string> warnings() const;

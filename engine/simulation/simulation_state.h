@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,7 +76,8 @@ struct Simulation::State {
   double overlap_m = 0.0;          // largest overlap of two bodies that was found in the last tick
   bool contacts_overflow = false;  // whether a search of the last tick exceeded a capacity
   Reaction reaction{};
-  SearchedShapes searched{};  // the shapes for which `between` was found
+  std::optional<RefineKnots> wanted_refinement = {};  // see Simulation::wanted_refinement()
+  SearchedShapes searched{};                          // the shapes for which `between` was found
 
   bool tool_is_soft() const {
     return scene.tool.kind == ToolKind::solid && bodies.size() > scene.bodies.size();
@@ -95,6 +97,8 @@ std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyS
 std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies);
 // Makes the memory for the constraints between all bodies.
 BodyContacts make_contact_buffer();
+// Makes all contacts again, without forces.
+void make_contacts(Simulation::State& state);
 // Moves the point of a body's motion with the body, or with the hand that holds it, to where it is now.
 void carry_motion(const BodyState& state, Body& body);
 
@@ -118,13 +122,16 @@ struct ToolKernel {
   // Adds the constraints of this tick to `contact`.
   void (*constrain)(ToolContact& contact, const ToolTouch& touch) = nullptr;
   // Changes the shape of the bodies under the tool; null if the action only adds constraints.
-  void (*reform)(Simulation::State& state, const HeldTool& held) = nullptr;
+  void (*reform)(Simulation::State& state, HeldTool& held) = nullptr;
   // False if the tool slides on the body without denting it (ToolMotion::body_yields).
   bool body_yields = true;
 };
 
-// Returns the kernel of an action. tool_step.cpp defines all kernels.
-const ToolKernel& find_kernel(ToolAction action);
+// Returns the kernel of a tool's action and reach. tool_step.cpp defines all kernels.
+const ToolKernel& find_kernel(const Tool& tool);
+
+// Returns the radius of a local stroke of the scene's tool on a body.
+double choose_local_radius_m(const Tool& tool, const BodyState& body);
 
 ToolHold make_hold(const ToolInput& input);
 // Returns the hold of the mirrored tool, with mirrored pose and axes.
@@ -172,7 +179,8 @@ struct CommandApplier {
   // again, because that takes as long as modelling it.
   Status check_changes(const Tool& tool) const;
   void adopt_model(ToolModel model);
-  void make_contacts();
+  void refit_contacts(int body, std::span<const int> new_sample);
+  Result<BodyMapping> make_refined(const RefineKnots& command) const;
   Status set_planes(std::vector<FixingPlane> planes);
   void set_skins(std::vector<SkinMapping> skins);
 };

@@ -60,6 +60,7 @@ void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>
     marks->resize(count);
   }
   std::copy(mesh.count.begin(), mesh.count.end(), out.count);
+  out.volume_change = lattice.rest_volume_change();
   std::size_t at = 0;
   for (int i = 0; i < mesh.count[0]; ++i) {
     for (int j = 0; j < mesh.count[1]; ++j) {
@@ -106,7 +107,8 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
       const BodyMapping& mapping = bodies[b].mapping();
       write_surface(mapping.current(), out[b].surface);
       out[b].surface.trim = bodies[b].trim;
-      out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
+      out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m,
+                         bodies[b].is_refined_enough};
     }
     out[b].shell_thickness_m = bodies[b].shell_thickness_m;
     out[b].is_rigid = bodies[b].rigid.has_value();

@@ -45,6 +45,7 @@ struct LatticeSnapshot {
   std::vector<std::uint8_t> on_shell;  // 1 where the node is on the surface or next to it
   // 1 for nodes in or on the body, 0 for other nodes of a box lattice, which are not fixed, touched or drawn.
   std::vector<std::uint8_t> in_body;
+  double volume_change = 0.0;  // by which strokes have changed the rest volume, as a fraction of it
 };
 
 struct ToolSnapshot {
@@ -57,6 +58,10 @@ struct ToolSnapshot {
   Pose device;  // pose of the hand
   Pose proxy;   // pose at which the material stops the tool; the tool is drawn there
   bool button = false;
+  // Centre and radius of a stroke of local reach: the touched point, or the nearest point of a tool that
+  // is close, and the radius along the surface; 0 for none.
+  Vector3 local_point_m = Vector3::Zero();
+  double local_radius_m = 0.0;
 };
 
 // Plane of symmetry, or fixing plane, which fixes everything on the side opposite to its normal.
@@ -93,6 +98,8 @@ struct MaterialSnapshot {
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
+  bool is_at_limit =
+      false;  // true if it is beyond the tolerance and more knots would not help or be too many
 };
 
 struct BodySnapshot {

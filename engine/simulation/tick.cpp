@@ -303,12 +303,48 @@ void mark_touched(Simulation::State& s) {
   }
 }
 
-// Measures the mapping residual for the panel: one body about eight times a second, each body in turn.
+// Returns the largest distance that the surface of a body may stay behind its lattice, m: a twentieth of the
+// tool's radius, so that a stroke shows, but at least 0.05 mm and a tenth of a cell, which the eye and the
+// lattice do not resolve.
+double find_residual_tolerance_m(const Simulation::State& s, const BodyState& body) {
+  constexpr double of_radius = 0.05, of_cell = 0.1, least_m = 5e-5;
+  const double radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
+  return std::max({least_m, of_radius * radius_m, of_cell * static_cast<double>(body.lattice.cell_size_m())});
+}
+
+// Returns the refinement that brings a surface that is behind its lattice closer to it; empty if none can. It
+// halves elements along their longer side, or along both sides if these differ by less than half. Elements
+// shorter than half a cell do not follow the lattice better.
+std::optional<RefineKnots> find_refinement(const BodyState& body, int index) {
+  constexpr double similar = 1.5, least_cells = 0.5;
+  const MappingResidual& residual = body.mapping().residual();
+  if (!residual.u_range || body.mapping().catch_up_ticks_left() > 0) return std::nullopt;
+  const auto [u_m, v_m] = body.mapping().element_lengths_m(residual.u, residual.v);
+  const double shortest_m = 2.0 * least_cells * static_cast<double>(body.lattice.cell_size_m());
+  RefineKnots refinement{index, {}, {}};
+  if (u_m >= shortest_m && similar * u_m >= v_m) refinement.u = residual.u_range;
+  if (v_m >= shortest_m && similar * v_m >= u_m) refinement.v = residual.v_range;
+  if (!refinement.u && !refinement.v) return std::nullopt;
+  const ControlNet& net = body.mapping().current().net;
+  if (net.rows * net.columns >= refined_control_point_limit) return std::nullopt;
+  return refinement;
+}
+
+// Measures how far surfaces are behind their lattices: one body about sixteen times a second, each body in
+// turn.
 void measure_residuals(Simulation::State& s) {
-  constexpr std::uint64_t interval_ticks = 128;
+  constexpr std::uint64_t interval_ticks = 64;
   if (s.tick % interval_ticks != 0) return;
-  BodyState& body = s.bodies[s.tick / interval_ticks % s.scene.bodies.size()];
-  if (!body.mesh()) body.mapping().measure_residual();
+  const std::size_t index = s.tick / interval_ticks % s.scene.bodies.size();
+  BodyState& body = s.bodies[index];
+  if (body.mesh() || body.rigid) return;
+  body.mapping().measure_residual(find_residual_tolerance_m(s, body));
+  const int number = static_cast<int>(index);
+  body.is_refined_enough = body.mapping().residual().u_range && body.mapping().catch_up_ticks_left() == 0 &&
+                           !find_refinement(body, number);
+  if (!s.wanted_refinement || s.wanted_refinement->body == number) {
+    s.wanted_refinement = find_refinement(body, number);
+  }
 }
 
 // Returns the motion of a tool in a part of the tick.
@@ -354,11 +390,12 @@ void advance_part(Simulation::State& s, const ToolHold& hold, const Tools& tools
   relax_bodies(s, {moving.data(), s.scene.symmetry.on ? std::size_t{2} : std::size_t{1}}, part);
   record_pushes(s, part.time_s());
   if (s.tool_is_soft()) turn_soft_tool(s, tools[0].motion.orientation);
-  if (const auto reform = find_kernel(s.scene.tool.action).reform; reform && part.index + 1 == part.count) {
+  hold_bodies(s, part);
+  // After hold_bodies(), which would move the whole body back by what a stroke moves its centre.
+  if (const auto reform = find_kernel(s.scene.tool).reform; reform && part.index + 1 == part.count) {
     reform(s, s.tool);
     if (s.scene.symmetry.on) reform(s, s.mirrored);
   }
-  hold_bodies(s, part);
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     if (s.bodies[b].is_gone || (s.bodies[b].rigid && !s.bodies[b].rigid->moves())) continue;
     s.bodies[b].update_skin();
@@ -382,6 +419,9 @@ Reaction Simulation::advance(const ToolInput& input) {
   clear_report(s);
   find_gone_bodies(s);
   begin_rigid_steps(s, tick_s);
+  for (BodyState& body : s.scene_bodies()) {
+    if (!body.mesh()) body.mapping().catch_up();
+  }
   bool has_searched = search_pairs(s, tick_s);
   const int parts = has_searched ? choose_parts(s) : 1;
   for (int p = 0; p < parts; ++p) {

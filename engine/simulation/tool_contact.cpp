@@ -18,6 +18,10 @@ constexpr int constraint_capacity = 2048;
 // found, spheres push only those within find_approach_m().
 constexpr double tool_margin_cells = 0.5;
 
+// A tool of local reach shows what it would shape from this distance on. Only points within the margin above
+// are pushed.
+constexpr double local_preview_m = 0.003;
+
 double find_margin_m(const BodyState& body) {
   return tool_margin_cells * static_cast<double>(body.lattice.cell_size_m());
 }
@@ -61,7 +65,7 @@ ToolShape make_shape(const Tool& tool, const ToolModel& model, const ToolHold& h
 }  // namespace
 
 ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& model)
-    : constraints_(constraint_capacity) {
+    : constraints_(constraint_capacity), local_stroke_(bodies) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
     if (body.mesh()) {
@@ -79,6 +83,23 @@ void ToolContact::release() {
   constraints_.forget();
   for (BodyContact& contact : contacts_) contact.points.fill({});
   gripped_ = false;
+  local_stroke_.end();
+}
+
+void ToolContact::carry_over(const ToolContact& before, int body, std::span<const int> new_sample) {
+  SPOONBILL_ASSERT(before.contacts_.size() == contacts_.size());
+  lifted_ = before.lifted_;
+  hovered_ = before.hovered_;
+  gripped_ = before.gripped_;
+  is_solid_ = before.is_solid_;
+  shape_ = before.shape_;
+  for (std::size_t b = 0; b < contacts_.size(); ++b) {
+    contacts_[b].collision = before.contacts_[b].collision;
+    contacts_[b].approach_m = before.contacts_[b].approach_m;
+    contacts_[b].points = before.contacts_[b].points;
+  }
+  constraints_.carry_over(before.constraints_, body, new_sample);
+  local_stroke_.carry_over(before.local_stroke_);
 }
 
 void ToolContact::lift() {
@@ -114,7 +135,7 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
     near |= collision.found && -collision.nearest.depth_m <= find_margin_m(bodies[b]);
   }
   if (!acts(inside, near, hold)) return release();
-  find_kernel(tool.action).constrain(*this, {bodies, hold, inside});
+  find_kernel(tool).constrain(*this, {bodies, hold, inside});
 }
 
 void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) {
@@ -145,6 +166,18 @@ void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) 
   gripped_ = true;
 }
 
+void ToolContact::grip_nearest(std::span<const BodyState> bodies, const ToolHold& hold) {
+  constraints_.clear();
+  const int body = deepest_body();
+  const BodyState& state = bodies[static_cast<std::size_t>(body)];
+  const SurfaceContact& nearest = contacts_[static_cast<std::size_t>(body)].collision.nearest;
+  const EmbeddedPoint point = state.mapping().at(nearest.u, nearest.v);
+  const Pose& pose = hold.pose;
+  const Vector3 offset = pose.orientation.conjugate() * (point.position_m(state.lattice) - pose.position_m);
+  overflow_ |= !constraints_.add_grip(body, state.lattice, point, offset);
+  gripped_ = true;
+}
+
 // After a push, the body vibrates against the tool. A lifted tool therefore counts as clear of the body only
 // at a distance of one margin or, while it hovers, outside the body.
 bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
@@ -164,7 +197,8 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
                        const ToolHold& hold) {
   if (body.mesh()) return;
   // The margin grows with the tool's movement, so that a fast tool cannot pass a body within a tick.
-  const double margin = std::max(find_margin_m(body), hold.reach_m);
+  double margin = std::max(find_margin_m(body), hold.reach_m);
+  if (tool.is_local()) margin = std::max(margin, local_preview_m);
   if (is_surface()) return find_near_points(contact, body, margin, hold);
   shape_ = make_shape(tool, model, hold);
   const double thickness = body.shell_thickness_m;

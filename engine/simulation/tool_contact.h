@@ -11,6 +11,7 @@
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
+#include "engine/simulation/local_stroke.h"
 #include "engine/simulation/tool_model.h"
 
 namespace spoonbill {
@@ -51,6 +52,15 @@ class ToolContact {
   // called by kernels, after prepare() has found the contacts.
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
   bool gripped() const { return gripped_; }
+  // Holds only the point of the surface that is nearest to the tool, of the body in which the tool is
+  // deepest.
+  void grip_nearest(std::span<const BodyState> bodies, const ToolHold& hold);
+  // The stroke of a tool with a local reach.
+  LocalStroke& local_stroke() { return local_stroke_; }
+  const LocalStroke& local_stroke() const { return local_stroke_; }
+  // Takes over the contacts of a tool on the same lattices, before a body's surface was refined.
+  // `new_sample` holds the new index of each of the body's samples. Allocates nothing.
+  void carry_over(const ToolContact& before, int body, std::span<const int> new_sample);
 
   // Suspends the tool from the next prepare() on. It acts again when the button is released and the tool is
   // not near a body (see acts()) or hovers outside the bodies.
@@ -70,6 +80,7 @@ class ToolContact {
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     constraints_.visit_state(visit);
+    local_stroke_.visit_state(visit);
     for (const BodyContact& contact : contacts_) {
       for (const ContactPoint& point : contact.points) {
         if (!point.is_used) continue;
@@ -142,6 +153,7 @@ class ToolContact {
   std::unique_ptr<Surface> placed_;    // only for B-spline tools, in world coordinates
   ToolShape shape_;                    // for all other tools
   ContactConstraints constraints_;
+  LocalStroke local_stroke_;
   bool is_solid_ = false;
   bool gripped_ = false;
   bool lifted_ = false;

@@ -7,6 +7,13 @@
 
 namespace spoonbill {
 
+double choose_local_radius_m(const Tool& tool, const BodyState& body) {
+  constexpr double contact_radii = 1.5, least_cells = 2.0;
+  if (tool.local_radius_m > 0.0) return tool.local_radius_m;
+  return std::max(contact_radii * contact_radius_m(tool),
+                  least_cells * static_cast<double>(body.lattice.cell_size_m()));
+}
+
 namespace {
 
 // Push: keeps the surfaces of the bodies out of the tool and never pulls them.
@@ -23,7 +30,7 @@ void pull(ToolContact& contact, const ToolTouch& touch) {
 
 // Smooth: smooths the surface under the tool (see smoothing.h) within the tool's radius, but at least within
 // a few cells. The tool slides on the surface without denting it.
-void smooth(Simulation::State& s, const HeldTool& held) {
+void smooth(Simulation::State& s, HeldTool& held) {
   constexpr double least_reach_cells = 2.5;
   const int number = held.contact.deepest_body();
   BodyState& body = s.bodies[static_cast<std::size_t>(number)];
@@ -39,38 +46,118 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
 }
 
-// Kernels in the order of tool_actions. A kernel without constrain() does not compile.
+// Pull with a local reach: holds the touched point, from which the stroke then moves the material.
+void hold_point(ToolContact& contact, const ToolTouch& touch) {
+  if (!touch.hold.gripping) return contact.release();
+  if (touch.inside && !contact.gripped()) contact.grip_nearest(touch.bodies, touch.hold);
+}
+
+// Part of the way to the hand that a local stroke moves the material in a tick: the material follows the hand
+// within about 5 ms, and the tool does not vibrate on it.
+constexpr double local_follow = 0.2;
+
+// Largest movement of the material in a tick, in lattice cells.
+constexpr double local_step_cells = 0.05;
+
+// Largest resistance of the material to a local stroke, as a fraction of the force that would pull the tool
+// back from the hand over the same depth.
+constexpr double local_resistance = 0.3;
+
+// Returns the force with which the material resists an elastic depth: that of an elastic half-space against a
+// sphere (Hertz 1881), up to what the hand can overcome. As the material takes its new place, the elastic
+// depth decays (see LocalStroke::relax()), so that the stroke reaches the hand.
+double find_resistance_n(const Tool& tool, const Material& material, double depth_m,
+                         double coupling_n_per_m) {
+  const double contact_m = std::max(contact_radius_m(tool), 1e-4);
+  const double reduced_pa =
+      material.youngs_modulus_pa / (1.0 - material.poissons_ratio * material.poissons_ratio);
+  const double hertz_n = 4.0 / 3.0 * reduced_pa * std::sqrt(contact_m) * depth_m * std::sqrt(depth_m);
+  return std::min(hertz_n, local_resistance * coupling_n_per_m * depth_m);
+}
+
+// Push or pull with a local reach: moves the material around the touched point to where the hand is, less
+// what its resistance takes.
+void reform_locally(Simulation::State& s, HeldTool& held) {
+  LocalStroke& stroke = held.contact.local_stroke();
+  const ContactConstraints& constraints = held.contact.constraints();
+  const int number = held.contact.deepest_body();
+  const bool pulls = s.scene.tool.action == ToolAction::pull;
+  const CollisionResult& collision = held.contact.collision(number);
+  if (constraints.count() == 0 ||
+      !(pulls ? held.contact.gripped() : constraints.acted() && collision.found)) {
+    return stroke.end();
+  }
+  const SurfaceContact& nearest = collision.nearest;
+  // A tool that slides shapes the material where it is now. Where it is, its position tells, because the
+  // surface may be behind the material.
+  constexpr double same_place = 0.25;
+  const auto has_slid = [&] {
+    const Vector3 moved_m = held.state.position_m - stroke.tool_start_m();
+    return (moved_m - moved_m.dot(nearest.normal) * nearest.normal).norm() > same_place * stroke.radius_m();
+  };
+  if (!stroke.is_active() || (!pulls && has_slid())) {
+    BodyState& touched = s.bodies[static_cast<std::size_t>(number)];
+    if (touched.rigid) return;
+    stroke.begin({number, nearest.u, nearest.v, held.state.position_m}, touched,
+                 choose_local_radius_m(s.scene.tool, touched));
+  }
+  BodyState& body = s.bodies[static_cast<std::size_t>(stroke.body())];
+  Vector3 lag_m = held.hand.position_m - held.state.position_m;
+  if (!pulls) lag_m = std::min(0.0, lag_m.dot(nearest.normal)) * nearest.normal;
+  const double lag = lag_m.norm();
+  const double coupling = constraints.motion().coupling_n_per_m;
+  const double resistance_n =
+      find_resistance_n(s.scene.tool, body.lattice.material(), stroke.elastic_m(), coupling);
+  stroke.relax(tick_s);
+  const double free_m = lag - resistance_n / coupling;
+  if (!(free_m > 0.0)) return;
+  const double largest_m = local_step_cells * static_cast<double>(body.lattice.cell_size_m());
+  stroke.move(body.lattice, std::min(local_follow * free_m, largest_m) / lag * lag_m);
+  if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
+}
+
+// Kernels in the order of tool_actions, and those of the actions that can have a local reach. A kernel
+// without constrain() does not compile.
 constexpr ToolKernel kernels[] = {
     {.constrain = push},
     {.constrain = pull},
     {.constrain = push, .reform = smooth, .body_yields = false},
 };
+constexpr ToolKernel local_push{.constrain = push, .reform = reform_locally, .body_yields = false};
+constexpr ToolKernel local_pull{.constrain = hold_point, .reform = reform_locally, .body_yields = false};
 static_assert(std::size(kernels) == tool_actions.size(), "each tool action must have a kernel");
 static_assert(std::all_of(std::begin(kernels), std::end(kernels),
                           [](const ToolKernel& kernel) { return kernel.constrain != nullptr; }));
 
 }  // namespace
 
-const ToolKernel& find_kernel(ToolAction action) {
-  return kernels[static_cast<std::size_t>(action)];
+const ToolKernel& find_kernel(const Tool& tool) {
+  if (tool.is_local()) return tool.action == ToolAction::pull ? local_pull : local_push;
+  return kernels[static_cast<std::size_t>(tool.action)];
 }
 
 namespace {
 
 // Returns the stiffness of the spring between hand and tool. If any body has an implicit solver, or is rigid
-// and moves, a hand without coupling also gets a spring, because such a body does not yield to a rigidly held
-// tool.
+// and moves, or if the tool has a local reach, a hand without coupling also gets a spring, because such a
+// body does not yield to a rigidly held tool.
 double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
   const auto is_stiff = [](const BodyState& body) {
     return body.solver() != nullptr || body.is_movable_rigid();
   };
   if (wanted_n_per_m > 0.0) return wanted_n_per_m;
+  if (s.scene.tool.is_local()) return hold_n_per_m;
   return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
 }
 
-ToolMotion make_motion(const Simulation::State& s, const Pose& from, const Pose& to,
+// Friction coefficient of a tool that keeps hold of what it touches. It slides only where the hand hardly
+// presses.
+constexpr double hold_friction = 100.0;
+
+ToolMotion make_motion(const Simulation::State& s, const Pose& from, const ToolHold& hold,
                        double coupling_n_per_m) {
+  const Pose& to = hold.pose;
   const Tool& tool = s.scene.tool;
   ToolMotion motion;
   motion.start_m = from.position_m;
@@ -78,7 +165,10 @@ ToolMotion make_motion(const Simulation::State& s, const Pose& from, const Pose&
   motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   motion.coupling_n_per_m = choose_coupling(s, coupling_n_per_m);
-  motion.body_yields = find_kernel(tool.action).body_yields;
+  motion.body_yields = find_kernel(tool).body_yields;
+  if (hold.gripping && tool.sideways == ToolGlide::hold && tool.action == ToolAction::push) {
+    motion.friction = hold_friction;
+  }
   return motion;
 }
 
@@ -115,7 +205,9 @@ TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double c
   } else {
     held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);
   }
-  ToolMotion motion = make_motion(s, held.hand, hand, coupling_n_per_m);
+  ToolHold to = hold;
+  to.pose = hand;
+  ToolMotion motion = make_motion(s, held.hand, to, coupling_n_per_m);
   if (s.tool_is_soft()) {
     motion.orientation = held.hand.orientation;  // turn_soft_tool() turns the tool after it has moved
     motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped};

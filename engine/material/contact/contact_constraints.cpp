@@ -44,6 +44,17 @@ void ContactConstraints::forget() {
   constraints_.clear();
 }
 
+void ContactConstraints::carry_over(const ContactConstraints& other, int body, std::span<const int> new_key) {
+  SPOONBILL_ASSERT(capacity_ >= other.constraints_.size());
+  forget();
+  for (const Constraint& constraint : other.constraints_) {
+    const bool is_of_sample = constraint.body == body && constraint.key >= 0;
+    if (is_of_sample && constraint.key >= static_cast<int>(new_key.size())) continue;
+    Constraint& carried = constraints_.emplace_back(constraint);
+    if (is_of_sample) carried.key = new_key[static_cast<std::size_t>(constraint.key)];
+  }
+}
+
 double ContactConstraints::last_force_n(int body, int key) const {
   const double* const force_n = kept_.find({.first = body, .point = key});
   return force_n ? *force_n : 0.0;
@@ -211,7 +222,8 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
   const double started = h * constraint.force_n, pushed = push.normal_impulse(h, pace, cap, started);
   if (constraint.keeps_force) constraint.force_n = pushed / h;
   if (pushed == 0.0 && started == 0.0) return;
-  const Vector3 dragged = push.drag(constraint.friction * pushed, constraint.drag_ns);
+  const Vector3 dragged =
+      push.drag(std::max(constraint.friction, motion_.friction) * pushed, constraint.drag_ns);
   const Vector3 impulse = (pushed - started) * push.normal - (dragged - constraint.drag_ns);
   if (constraint.keeps_force) constraint.drag_ns = dragged;
   exchange(lattice, constraint, tool, impulse);

@@ -42,6 +42,7 @@ struct ToolMotion {
   // Stiffness of the critically damped spring between hand and tool; 0 couples them rigidly.
   double coupling_n_per_m = 0.0;
   bool body_yields = true;  // false: the tool meets the body as a rigid wall
+  double friction = 0.0;    // friction coefficient of the tool; the larger one of tool and body counts
   CarriedNodes carried;
 };
 
@@ -68,6 +69,9 @@ class ContactConstraints {
   void clear();
   // Removes the constraints and their forces.
   void forget();
+  // Takes over the constraints of another object of the same capacity. A push on a sample of `body` gets the
+  // key new_key[key]; pushes on points between its samples are left out.
+  void carry_over(const ContactConstraints& other, int body, std::span<const int> new_key);
   // Each add function returns false if there are already as many constraints as the capacity permits. `body`
   // is the index of the lattice in the views passed to start() and pass().
   //
@@ -161,7 +165,7 @@ class ContactConstraints {
     // Velocity change of the point per impulse, 1/kg; 0 if the body does not yield. For a rigid body, it is
     // that along the normal of a push; `slide_compliance` is the largest across the normal.
     double compliance = 0.0, slide_compliance = 0.0;
-    double friction = 0.0;  // friction coefficient of the body's surface; tools have none
+    double friction = 0.0;  // friction coefficient of the body's surface
     int key = changing_point_key;
     bool is_implicit = false;  // true if an implicit solver steps the lattice
     // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and

@@ -124,7 +124,7 @@ class ImplicitBody {
                                    InstructionSet set);
   ImplicitBody(ImplicitBody&&) = default;
   ImplicitBody& operator=(ImplicitBody&&) = default;
-  ImplicitBody(const ImplicitBody&) = delete;
+  ImplicitBody(const ImplicitBody&) = default;
   ImplicitBody& operator=(const ImplicitBody&) = delete;
 
   const LatticeMesh& mesh() const { return mesh_; }

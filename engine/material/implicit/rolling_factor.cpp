@@ -31,6 +31,17 @@ RollingFactor::RollingFactor(const LatticeMesh& mesh, const BandKernels& kernels
   next_.band = {size, half_band, stride, columns_[1].data()};
 }
 
+RollingFactor::RollingFactor(const RollingFactor& other)
+    : kernels_(other.kernels_),
+      slice_columns_(other.slice_columns_),
+      used_(other.used_),
+      next_(other.next_),
+      columns_{other.columns_[0], other.columns_[1]} {
+  for (BandView* const band : {&used_, &next_.band}) {
+    band->columns = columns_[band->columns == other.columns_[0].data() ? 0 : 1].data();
+  }
+}
+
 int RollingFactor::padded_size() const {
   return (used_.size + band_block - 1) / band_block * band_block + used_.stride;
 }

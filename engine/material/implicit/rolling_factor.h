@@ -42,7 +42,7 @@ class RollingFactor {
   RollingFactor(const LatticeMesh& mesh, const BandKernels& kernels);
   RollingFactor(RollingFactor&&) = default;
   RollingFactor& operator=(RollingFactor&&) = default;
-  RollingFactor(const RollingFactor&) = delete;
+  RollingFactor(const RollingFactor& other);
   RollingFactor& operator=(const RollingFactor&) = delete;
 
   // Length of the vectors passed to solve(); they have zeros after the last coordinate.

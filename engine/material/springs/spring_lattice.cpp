@@ -392,6 +392,17 @@ double SpringLattice::volume_m3() const {
   return volume;
 }
 
+double SpringLattice::rest_volume_change() const {
+  constexpr double sum_of_volume = 12.0;
+  double at_first_m3 = 0.0, now_m3 = 0.0;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(mesh_.node_count()); ++n) {
+    if (has_cell_[n] == 0.0f) continue;
+    at_first_m3 += 1.0 / static_cast<double>(inverse_volume_[n]);
+    now_m3 += static_cast<double>(rest_volume_sum_[n]) / sum_of_volume;
+  }
+  return now_m3 / at_first_m3 - 1.0;
+}
+
 double SpringLattice::fastest_m_per_s() const {
   return std::sqrt(kernels_->find_largest_square(vx_.data(), vy_.data(), vz_.data(), padded_count_));
 }

@@ -47,6 +47,8 @@ class SpringLattice {
   // Volume of the deformed body, m^3.
   double volume_m3() const;
   double rest_volume_m3() const { return rest_volume_; }
+  // Returns by how much reform() has changed the cells' volume at rest, as a fraction of it.
+  double rest_volume_change() const;
 
   // Inertia of the nodes divided by their mass, at least 1. A larger inertia lets a tick take fewer substeps.
   // At rest, every force is the true one; a motion takes sqrt(scale) times as long as the real one ("mass

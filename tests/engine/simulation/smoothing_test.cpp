@@ -48,6 +48,17 @@ double dent_m(const Simulation& simulation, double v) {
   return deepest;
 }
 
+// Returns the largest gain of the handle's thickness beside a dent at v.
+double rim_m(const Simulation& simulation, double v) {
+  double highest = 0.0;
+  for (int i = -24; i <= 24; ++i) {
+    const double at = v + 0.0005 * i;
+    highest = std::max(
+        highest, thickness_m(simulation.surface(), at) - thickness_m(small_handle().bodies[0].surface, at));
+  }
+  return highest;
+}
+
 // Returns a handle with a dent that a point tool has pressed while both ends were fixed. Afterwards only the
 // left end stays fixed.
 Simulation dented(double v) {
@@ -101,6 +112,24 @@ TEST(Smoothing, TakesADentOutAndLeavesTheRestInPlace) {
   // The handle bends by no more than a tenth of the dent.
   EXPECT_LT((top(simulation.surface(), 0.058) - tip).norm(), 0.1 * before);
   EXPECT_EQ((top(simulation.surface(), 0.010) - top(dent, 0.010)).norm(), 0.0);
+}
+
+TEST(Smoothing, LowersTheRimOfADentAndDoesNotDeepenItsFloor) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  const double v = 0.03, radius = 0.008;
+  Simulation simulation = dented(v);
+  const double rim = rim_m(simulation, v), floor = dent_m(simulation, v);
+  ASSERT_GT(rim, 2e-5) << "the material that a press displaces rises beside it";
+  choose(simulation, ToolAction::smooth, radius);
+  for (int tick = 0; tick < 1500; ++tick) {
+    const double x = v + 0.006 * std::sin(tick * 2.0 * std::numbers::pi / 500.0);
+    simulation.advance(resting(x, top(simulation.surface(), x).y() + radius - 0.001));
+    // Rounding aside, the floor is never deeper than it was.
+    if (tick % 100 != 0) continue;
+    ASSERT_LT(dent_m(simulation, v), 1.001 * floor) << tick;
+  }
+  EXPECT_LT(rim_m(simulation, v), 0.9 * rim);
+  EXPECT_LT(dent_m(simulation, v), floor);
 }
 
 TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/bspline/evaluate.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/simulation/handle.h"
 
@@ -118,6 +120,33 @@ TEST(Tool, AResetProxyDoesNotSweepTheWayBetween) {
   const Reaction reaction = simulation.advance(above(0.03, -0.03));
   EXPECT_FALSE(reaction.touching);
   EXPECT_NEAR(reaction.proxy.position_m.y(), -0.03, 1e-9);
+}
+
+// A pressed tool that holds takes the touched point along sideways. One that slides, or is not pressed,
+// leaves it.
+TEST(Tool, HoldsWhatItTouchesWhilePressed) {
+  const auto dragged_m = [](ToolGlide sideways, bool pressed) {
+    Scene scene = small_handle();
+    scene.bodies[0].material.plastic = false;
+    scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+    scene.tool.sideways = sideways;
+    Simulation simulation = simulate(scene);
+    const auto tip_m = [&] { return evaluate(simulation.surface(), 0.9, 0.05).position_m.z(); };
+    const double before_m = tip_m();
+    for (int tick = 0; tick < 600; ++tick) {
+      const double down_m = 1e-3 * std::min(1.0, tick / 200.0);
+      const double aside_m = 3e-3 * std::clamp((tick - 200) / 300.0, 0.0, 1.0);
+      ToolInput input = above(0.05, 0.0026 + scene.tool.radius_m - down_m, pressed);
+      input.pose.position_m.z() += aside_m;
+      input.coupling_n_per_m = 1000.0 / 60.0;  // a hand of 1000 N/m that feels the force 60 times as strong
+      simulation.advance(input);
+    }
+    return tip_m() - before_m;
+  };
+  const double held_m = dragged_m(ToolGlide::hold, true);
+  EXPECT_GT(held_m, 0.8 * 3e-3);
+  EXPECT_LT(dragged_m(ToolGlide::slide, true), 0.3 * held_m);
+  EXPECT_LT(dragged_m(ToolGlide::hold, false), 0.3 * held_m);
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-#include "app/session/stroke_history.h"
+#include "app/session/edit_history.h"
 
 #include <gtest/gtest.h>
 
 #include "app/session/session.h"
+#include "engine/simulation/body_mapping.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
@@ -22,14 +23,18 @@ Scene coarse_handle() {
   return scene;
 }
 
+Simulation make_held_handle() {
+  Simulation simulation = Simulation::make(coarse_handle(), InstructionSet::baseline).value();
+  EXPECT_TRUE(simulation.apply(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}}));
+  return simulation;
+}
+
 // A simulation with its history and a tool that the test moves.
 struct Touched {
-  Simulation simulation = Simulation::make(coarse_handle(), InstructionSet::baseline).value();
-  StrokeHistory history{simulation};
+  Simulation simulation = make_held_handle();
+  EditHistory history{simulation};
   CouplingState coupling;
   DeviceSpecification device = VirtualDevice::default_specification();
-
-  Touched() { EXPECT_TRUE(simulation.apply(PlacePlane{{Vector3(0.02, 0, 0), Vector3::UnitX()}})); }
 
   bool hold(double height_m, int ticks) {
     bool touched = false;
@@ -58,14 +63,13 @@ struct Touched {
 
   ShapeState stroke() {
     ShapeState before = press();
-    hold(0.03, StrokeHistory::release_ticks + 10);
+    hold(0.03, EditHistory::release_ticks + 10);
     return before;
   }
 };
 
-TEST(StrokeHistory, UndoGivesTheShapeBeforeTheStrokeBitForBit) {
+TEST(EditHistory, UndoGivesTheShapeBeforeTheStrokeBitForBit) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   EXPECT_FALSE(touched.history.can_undo());
   const ShapeState before = touched.stroke();
   EXPECT_NE(touched.simulation.shape(), before);
@@ -75,9 +79,8 @@ TEST(StrokeHistory, UndoGivesTheShapeBeforeTheStrokeBitForBit) {
   EXPECT_FALSE(touched.history.can_undo());
 }
 
-TEST(StrokeHistory, UndoGivesBackTheShapeHash) {
+TEST(EditHistory, UndoGivesBackTheShapeHash) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   const std::uint64_t start = shape_hash(touched.simulation);
   touched.hold(0.03, 20);
   EXPECT_EQ(shape_hash(touched.simulation), start) << "ticks do not count";
@@ -91,7 +94,7 @@ TEST(StrokeHistory, UndoGivesBackTheShapeHash) {
   EXPECT_EQ(shape_hash(touched.simulation), start);
 }
 
-TEST(StrokeHistory, TheShapeHashHasMaterialsAndPlanes) {
+TEST(EditHistory, TheShapeHashHasMaterialsAndPlanes) {
   Touched touched;
   const std::uint64_t start = shape_hash(touched.simulation);
   const Material before = touched.simulation.scene().bodies[0].material;
@@ -105,9 +108,8 @@ TEST(StrokeHistory, TheShapeHashHasMaterialsAndPlanes) {
   EXPECT_NE(shape_hash(touched.simulation), start);
 }
 
-TEST(StrokeHistory, WalksBackAndForthOverSeveralStrokes) {
+TEST(EditHistory, WalksBackAndForthOverSeveralStrokes) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   std::vector<ShapeState> shapes;
   for (int i = 0; i < 3; ++i) {
     shapes.push_back(touched.stroke());
@@ -127,9 +129,77 @@ TEST(StrokeHistory, WalksBackAndForthOverSeveralStrokes) {
   EXPECT_FALSE(touched.history.can_redo());
 }
 
-TEST(StrokeHistory, ANewStrokeAfterUndoForgetsWhatWasUndone) {
+// Commands between strokes are steps like strokes. Refinements in given ranges belong to the stroke.
+TEST(EditHistory, WalksOverStrokesAndCommands) {
   Touched touched;
-  touched.history.clear(touched.simulation);
+  Simulation& simulation = touched.simulation;
+  Material stiffer = simulation.scene().bodies[0].material;
+  stiffer.youngs_modulus_pa *= 1.5;
+  const std::vector<Command> commands = {RefineKnots{}, PlacePlane{{Vector3(0.03, 0, 0), Vector3::UnitX()}},
+                                         SetMaterial{stiffer}, RemovePlanes{}, KeepShape{}};
+  std::vector<std::uint64_t> hashes;
+  const auto remember = [&] {
+    touched.hold(0.03, catch_up_ticks + 1);
+    hashes.push_back(shape_hash(simulation));
+  };
+  for (const Command& command : commands) {
+    hashes.push_back(shape_hash(simulation));
+    touched.press();
+    ASSERT_TRUE(touched.history.apply(simulation, RefineKnots{0, Range<double>{0.4, 0.6}, {}}));
+    touched.hold(0.03, EditHistory::release_ticks + 10);
+    touched.hold(0.03, 300);  // until a stroke on an elastic body is at rest
+    remember();
+    const Status applied = touched.history.apply(simulation, command);
+    ASSERT_TRUE(applied) << applied.error().message;
+  }
+  remember();
+  for (std::size_t k = hashes.size() - 1; k > 0; --k) {
+    ASSERT_TRUE(touched.history.can_undo()) << k;
+    ASSERT_TRUE(touched.history.undo(simulation));
+  }
+  EXPECT_FALSE(touched.history.can_undo());
+  EXPECT_EQ(shape_hash(simulation), hashes.front());
+  while (touched.history.can_redo()) ASSERT_TRUE(touched.history.redo(simulation));
+  EXPECT_EQ(shape_hash(simulation), hashes.back());
+}
+
+TEST(EditHistory, ChangesOfOneMaterialAreOneStep) {
+  Touched touched;
+  const Material before = touched.simulation.scene().bodies[0].material;
+  const std::uint64_t start = shape_hash(touched.simulation);
+  for (int k = 1; k <= 5; ++k) {
+    Material stiffer = before;
+    stiffer.youngs_modulus_pa *= 1.0 + 0.1 * k;
+    ASSERT_TRUE(touched.history.apply(touched.simulation, SetMaterial{stiffer}));
+    touched.hold(0.03, 10);
+  }
+  ASSERT_TRUE(touched.history.undo(touched.simulation));
+  EXPECT_EQ(shape_hash(touched.simulation), start);
+  EXPECT_FALSE(touched.history.can_undo());
+}
+
+TEST(EditHistory, ARefusedCommandIsNoStep) {
+  Touched touched;
+  EXPECT_FALSE(touched.history.apply(touched.simulation, RefineKnots{5}));
+  EXPECT_FALSE(touched.history.can_undo());
+}
+
+TEST(EditHistory, KeepsTheNewestBuilds) {
+  Touched touched;
+  std::vector<std::uint64_t> hashes;
+  for (std::size_t k = 0; k < EditHistory::build_limit + 4; ++k) {
+    const double x_m = 0.02 + 2e-4 * static_cast<double>(k);
+    ASSERT_TRUE(touched.history.apply(touched.simulation, RemovePlanes{}));
+    ASSERT_TRUE(
+        touched.history.apply(touched.simulation, PlacePlane{{Vector3(x_m, 0, 0), Vector3::UnitX()}}));
+  }
+  std::size_t undone = 0;
+  for (; touched.history.can_undo(); ++undone) ASSERT_TRUE(touched.history.undo(touched.simulation));
+  EXPECT_EQ(undone, EditHistory::build_limit);
+}
+
+TEST(EditHistory, ANewStrokeAfterUndoForgetsWhatWasUndone) {
+  Touched touched;
   touched.stroke();
   touched.stroke();
   ASSERT_TRUE(touched.history.undo(touched.simulation));
@@ -140,29 +210,26 @@ TEST(StrokeHistory, ANewStrokeAfterUndoForgetsWhatWasUndone) {
   EXPECT_TRUE(touched.history.can_undo());
 }
 
-TEST(StrokeHistory, ABounceDoesNotEndAStroke) {
+TEST(EditHistory, ABounceDoesNotEndAStroke) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   touched.hold(0.009, 40);
-  touched.hold(0.03, StrokeHistory::release_ticks - 10);
+  touched.hold(0.03, EditHistory::release_ticks - 10);
   touched.hold(0.009, 40);
   touched.hold(0.03, 200);
   ASSERT_TRUE(touched.history.undo(touched.simulation));
   EXPECT_FALSE(touched.history.can_undo());
 }
 
-TEST(StrokeHistory, WithoutStrokesNothingHappens) {
+TEST(EditHistory, WithoutStrokesNothingHappens) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   const ShapeState before = touched.simulation.shape();
   EXPECT_TRUE(touched.history.undo(touched.simulation));
   EXPECT_TRUE(touched.history.redo(touched.simulation));
   EXPECT_EQ(touched.simulation.shape(), before);
 }
 
-TEST(StrokeHistory, CancelForgetsTheStrokeUnderWay) {
+TEST(EditHistory, CancelForgetsTheStrokeUnderWay) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   touched.stroke();
   const ShapeState before = touched.press();
   ASSERT_TRUE(touched.history.in_stroke());
@@ -173,39 +240,36 @@ TEST(StrokeHistory, CancelForgetsTheStrokeUnderWay) {
   EXPECT_NE(touched.simulation.shape(), before);
 }
 
-TEST(StrokeHistory, CancelWithoutAStrokeDoesNothing) {
+TEST(EditHistory, CancelWithoutAStrokeDoesNothing) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   touched.stroke();
   const ShapeState after = touched.simulation.shape();
   ASSERT_TRUE(touched.history.cancel(touched.simulation));
   EXPECT_EQ(touched.simulation.shape(), after);
 }
 
-TEST(StrokeHistory, KeepsTheNewestWhenItIsFull) {
+TEST(EditHistory, KeepsTheNewestWhenItIsFull) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Touched touched;
-  touched.history.clear(touched.simulation);
-  const int strokes = static_cast<int>(StrokeHistory::shape_limit) + 6;
+  const int strokes = static_cast<int>(EditHistory::shape_limit) + 6;
   std::vector<ShapeState> befores;
   for (int i = 0; i < strokes; ++i) befores.push_back(touched.stroke());
   const ShapeState last = touched.simulation.shape();
   int undone = 0;
   for (; touched.history.can_undo(); ++undone) ASSERT_TRUE(touched.history.undo(touched.simulation));
-  EXPECT_EQ(undone, static_cast<int>(StrokeHistory::shape_limit) - 1);
+  EXPECT_EQ(undone, static_cast<int>(EditHistory::shape_limit) - 1);
   EXPECT_EQ(touched.simulation.shape(), befores[static_cast<std::size_t>(strokes - undone)]);
   while (touched.history.can_redo()) ASSERT_TRUE(touched.history.redo(touched.simulation));
   EXPECT_EQ(touched.simulation.shape(), last);
 }
 
-TEST(StrokeHistory, FollowsTheTicksWithoutAllocating) {
+TEST(EditHistory, FollowsTheTicksWithoutAllocating) {
   Touched touched;
-  touched.history.clear(touched.simulation);
   touched.hold(0.03, 2);
   const std::size_t before = allocation_count();
   for (int i = 0; i < 5; ++i) {
     touched.hold(0.0, 5);
-    touched.hold(0.03, StrokeHistory::release_ticks + 1);
+    touched.hold(0.03, EditHistory::release_ticks + 1);
   }
   EXPECT_EQ(allocation_count(), before);
 }

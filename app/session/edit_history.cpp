@@ -1,0 +1,135 @@
+#include "app/session/edit_history.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace spoonbill {
+
+bool replaces_build(const Command& command) {
+  return std::holds_alternative<PlacePlane>(command) || std::holds_alternative<RemovePlanes>(command) ||
+         std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command) ||
+         std::holds_alternative<SetMaterial>(command);
+}
+
+EditHistory::EditHistory(const Simulation& simulation) : untouched_{simulation.shape(), 0} {
+  std::size_t bytes = 1;
+  for (const std::vector<float>& lattice : untouched_.shape.lattices) bytes += lattice.size() * sizeof(float);
+  states_.assign(std::clamp<std::size_t>(memory_limit_bytes / bytes, 3, shape_limit), untouched_);
+}
+
+void EditHistory::after_tick(const Simulation& simulation, bool touching) {
+  if (touching) {
+    if (!touching_) begin_step(untouched_);
+    touching_ = true;
+    ticks_since_touch_ = 0;
+    return;
+  }
+  if (touching_ && ++ticks_since_touch_ < release_ticks) return;
+  touching_ = false;
+  simulation.write_shape(untouched_.shape);
+  untouched_.build = live_build_;
+}
+
+void EditHistory::drop_oldest() {
+  std::rotate(states_.begin(), states_.begin() + 1, states_.end());
+}
+
+void EditHistory::begin_step(const State& before) {
+  if (is_open_) {
+    if (current_ + 1 == states_.size()) {
+      drop_oldest();
+    } else {
+      ++current_;
+    }
+  }
+  states_[current_] = before;
+  count_ = current_ + 1;
+  is_open_ = true;
+  material_body_ = -1;
+}
+
+Status EditHistory::apply(Simulation& simulation, const Command& command) {
+  const auto* const refine = std::get_if<RefineKnots>(&command);
+  const auto* const material = std::get_if<SetMaterial>(&command);
+  const bool belongs_to_last = (refine != nullptr && (refine->u || refine->v)) ||
+                               (material != nullptr && material->body == material_body_ && is_open_);
+  const State before{simulation.shape(), live_build_};
+  std::shared_ptr<SimulationBuild> build = simulation.copy_build();
+  if (Status applied = simulation.apply(command); !applied) return applied;
+  if (!belongs_to_last) {
+    begin_step(before);
+    touching_ = false;
+    if (material != nullptr) material_body_ = material->body;
+  }
+  builds_.emplace(live_build_, std::move(build));
+  live_build_ = ++last_build_;
+  if (!touching_) untouched_ = {simulation.shape(), live_build_};
+  drop_unused_builds();
+  return {};
+}
+
+bool EditHistory::undo_needs_build() const {
+  if (!can_undo()) return false;
+  return states_[is_open_ ? current_ : current_ - 1].build != live_build_;
+}
+
+Status EditHistory::undo(Simulation& simulation) {
+  if (!can_undo()) return {};
+  if (!is_open_) return restore(current_ - 1, simulation);
+  if (current_ + 1 == states_.size()) {
+    drop_oldest();
+    --current_;
+  }
+  simulation.write_shape(states_[current_ + 1].shape);
+  states_[current_ + 1].build = live_build_;
+  count_ = current_ + 2;
+  return restore(current_, simulation);
+}
+
+Status EditHistory::redo(Simulation& simulation) {
+  return can_redo() ? restore(current_ + 1, simulation) : Status();
+}
+
+Status EditHistory::cancel(Simulation& simulation) {
+  if (!in_stroke()) return {};
+  count_ = current_ + 1;
+  return restore(current_, simulation);
+}
+
+Status EditHistory::restore(std::size_t index, Simulation& simulation) {
+  const State& state = states_[index];
+  if (state.build != live_build_) {
+    const auto stored = builds_.find(state.build);
+    std::shared_ptr<SimulationBuild> replaced = simulation.exchange_build(std::move(stored->second));
+    builds_.erase(stored);
+    builds_.emplace(live_build_, std::move(replaced));
+    live_build_ = state.build;
+  }
+  if (Status restored = simulation.restore(state.shape); !restored) return restored;
+  untouched_ = state;
+  current_ = index;
+  is_open_ = false;
+  touching_ = false;
+  material_body_ = -1;
+  return {};
+}
+
+// Drops the builds that no state needs, and the oldest states while there are more builds than the limit.
+void EditHistory::drop_unused_builds() {
+  const auto drop = [&] {
+    std::erase_if(builds_, [&](const auto& stored) {
+      return std::none_of(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(count_),
+                          [&](const State& state) { return state.build == stored.first; });
+    });
+  };
+  drop();
+  while (builds_.size() > build_limit && current_ > 0) {
+    drop_oldest();
+    --current_;
+    --count_;
+    drop();
+  }
+}
+
+}  // namespace spoonbill
