@@ -25,6 +25,7 @@ struct ChangeOptions {
   std::filesystem::path model, out;
   ChangeRequest change;
   std::optional<int> continuity;  // empty if --continuity is not given
+  std::optional<Extent> control;  // empty if --control is not given
   int body = 1;
   double tolerance_m = 1e-5;
   bool json = false;
@@ -76,6 +77,7 @@ Status change(const ChangeOptions& options, Console& console) {
   if (Status checked = check_output(options.out, options.how); !checked) return checked;
   ChangeRequest request = options.change;
   if (options.continuity) request.continuity = *options.continuity;
+  if (options.control) request.control = {options.control->width, options.control->height};
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   std::vector<Body>& bodies = document->scene.bodies;
@@ -115,7 +117,8 @@ CommandEntry add_change(OptionSet root) {
   parser.set_footer(
       "Changes:\n" + list_changes() +
       "A parameter is in the knot domain, which `spoonbill info` shows. Regions, loads, supports and\n"
-      "the rim are kept by insert, remove, degree, simplify and close, and dropped by the other changes.\n"
+      "the rim are kept by insert, remove, degree, simplify, rebuild and close, and dropped by the other "
+      "changes.\n"
       "Example: spoonbill change assets/models/spoon-handle.json split v=50 --out halves.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
   parser
@@ -145,12 +148,24 @@ CommandEntry add_change(OptionSet root) {
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Continuity of the seam that `close` makes; default: C2. C0 keeps an edge");
+  add_parsed_option(
+      parser, "--control", "UxV",
+      [](const std::string& text) { return parse_extent(text, control_point_count_range, "20x20"); },
+      [options](const Extent& control) { options->control = control; },
+      "Control points along u and v that `rebuild` leaves, such as 20x20");
   // CHANGE and --continuity may be given in any order, so the check runs after both are parsed.
   parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {
       return Error{ErrorCode::inconsistent,
                    "--continuity: applies only to the seam that 'close' makes; remove --continuity",
                    "--continuity"};
+    }
+    const bool rebuilds = options->change.kind == ChangeKind::rebuild;
+    if (rebuilds != options->control.has_value()) {
+      return Error{ErrorCode::inconsistent,
+                   rebuilds ? "rebuild: needs --control, such as --control 20x20"
+                            : "--control: applies only to 'rebuild'; remove --control",
+                   "--control"};
     }
     return {};
   });

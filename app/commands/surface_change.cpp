@@ -178,6 +178,46 @@ Result<ChangedSurfaces> remove_spare_knots(const Surface& surface, const ChangeR
   return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
 }
 
+// Returns knots with the same degree, domain and closure for `count` control points. They are as dense along
+// the direction as the given knots, in proportion.
+Result<KnotVector> thin_out(const KnotVector& knots, int count) {
+  const std::vector<double> breaks = knots.breakpoints();
+  const int elements = knots.is_periodic() ? count : count - knots.degree();
+  if (elements < 1 || count > knots.control_point_count()) {
+    const int least = knots.is_periodic() ? 2 : knots.degree() + 1;
+    return Error{ErrorCode::out_of_range,
+                 "rebuild: " + std::to_string(count) + " control points, must be from " +
+                     std::to_string(least) + " to the " + std::to_string(knots.control_point_count()) +
+                     " of the surface",
+                 "--control"};
+  }
+  std::vector<double> fewer;
+  for (int k = 0; k <= elements; ++k) {
+    const double place = static_cast<double>(breaks.size() - 1) * k / elements;
+    const auto below = std::min(static_cast<std::size_t>(place), breaks.size() - 2);
+    const double part = place - static_cast<double>(below);
+    fewer.push_back((1.0 - part) * breaks[below] + part * breaks[below + 1]);
+  }
+  fewer.back() = breaks.back();
+  if (knots.is_periodic()) return KnotVector::periodic(knots.degree(), std::move(fewer));
+  const auto degree = static_cast<std::size_t>(knots.degree());
+  fewer.insert(fewer.begin(), degree, breaks.front());
+  fewer.insert(fewer.end(), degree, breaks.back());
+  return KnotVector::open(knots.degree(), std::move(fewer));
+}
+
+Result<ChangedSurfaces> rebuild_net(const Surface& surface, const ChangeRequest& request, const Allowed&) {
+  const auto u = thin_out(surface.u, request.control[0]);
+  if (!u) return u.error();
+  const auto v = thin_out(surface.v, request.control[1]);
+  if (!v) return v.error();
+  auto along_u = fit_coarser_knots(surface, Direction::u, u.value());
+  if (!along_u) return along_u.error();
+  auto both = fit_coarser_knots(along_u->surface, Direction::v, v.value());
+  if (!both) return both.error();
+  return ChangedSurfaces{{std::move(both->surface)}, {}, along_u->deviation_m + both->deviation_m, true};
+}
+
 Result<ChangedSurfaces> reverse_direction(const Surface& surface, const ChangeRequest& request,
                                           const Allowed&) {
   return exact_change(reversed(surface, request.direction), false);
@@ -258,6 +298,8 @@ const std::vector<Change>& all_changes() {
        "raise the degree (exact) or lower it within the tolerance"},
       {ChangeKind::simplify, none, 0, remove_spare_knots, nullptr, "simplify", "",
        "remove all knots that the tolerance allows"},
+      {ChangeKind::rebuild, none, 0, rebuild_net, nullptr, "rebuild", "",
+       "reduce the net to --control points; reports the deviation"},
       {ChangeKind::reverse, direction, 1, reverse_direction, reverse_trim, "reverse", "v",
        "reverse a direction; flips the normals"},
       {ChangeKind::exchange, none, 0, exchange_directions, exchange_trim, "exchange", "",

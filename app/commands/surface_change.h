@@ -2,6 +2,7 @@
 // replaced.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,20 @@ struct ChangedSurfaces {
   bool keeps_parameters = true;  // false if regions, loads, supports and rim would move
 };
 
-enum class ChangeKind { split, insert, remove, degree, simplify, reverse, exchange, seam, close, cap, open };
+enum class ChangeKind {
+  split,
+  insert,
+  remove,
+  degree,
+  simplify,
+  rebuild,
+  reverse,
+  exchange,
+  seam,
+  close,
+  cap,
+  open
+};
 
 // A parsed change. Members that its kind does not use are ignored.
 struct ChangeRequest {
@@ -30,8 +44,9 @@ struct ChangeRequest {
   double parameter = 0.0;  // in the knot domain of the direction
   int number = 1;          // a degree, or the number of copies of a knot
   Side side = Side::v_end;
-  double height_m = 0.0;  // height of a cap
-  int continuity = 2;     // continuity of the seam that the change `close` makes
+  double height_m = 0.0;                // height of a cap
+  int continuity = 2;                   // continuity of the seam that the change `close` makes
+  std::array<int, 2> control = {0, 0};  // control points along u and v that the change `rebuild` leaves
 };
 
 // Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are wrong whatever the

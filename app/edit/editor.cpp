@@ -61,11 +61,30 @@ Vector3 rest_position(const Body& body) {
   return position;
 }
 
-constexpr Range<double> strength_range_m{0.0002, 0.02};
 constexpr double drag_growth_per_px = 0.01;
 
 bool is_key_down(int key) {
   return ImGui::IsKeyDown(key);
+}
+
+// Draws a line from the tool straight down to the ground, with a cross there, so that one sees how deep in
+// the picture the tool is.
+void draw_plumb_line(const Snapshot& snapshot, const ViewSettings& view, int width_px, int height_px) {
+  const Viewport viewport = make_viewport(width_px, height_px, view.panel_px);
+  const Vector3& from_m = snapshot.tool.proxy.position_m;
+  const Vector3 foot_m(from_m.x(), view.ground_y_m, from_m.z());
+  constexpr double arm_m = 0.004;
+  const auto colour = IM_COL32(palette::tool.r, palette::tool.g, palette::tool.b, 200);
+  const auto line = [&](const Vector3& start_m, const Vector3& end_m) {
+    const auto start = project(view.camera, viewport, start_m), end = project(view.camera, viewport, end_m);
+    if (!start || !end) return;
+    ImGui::GetBackgroundDrawList()->AddLine(
+        ImVec2(static_cast<float>(start->x()), static_cast<float>(start->y())),
+        ImVec2(static_cast<float>(end->x()), static_cast<float>(end->y())), colour, 1.5F);
+  };
+  line(from_m, foot_m);
+  for (const Vector3& arm : {Vector3(arm_m, 0.0, 0.0), Vector3(0.0, 0.0, arm_m)})
+    line(foot_m - arm, foot_m + arm);
 }
 
 double scale_by_drag(double value, double moved_px, Range<double> range) {
@@ -346,6 +365,7 @@ void Editor::lay_out_labels(const LiveFrame& frame, ViewSettings& view) {
   const int height = window_.height_px();
   draw_labels(overlay_labels(frame.snapshot, view, width, height), view, width, height,
               *window_.theme().fonts.body, *ImGui::GetBackgroundDrawList());
+  if (hand_.is_pressing()) draw_plumb_line(frame.snapshot, view, width, height);
 }
 
 void Editor::lay_out_panel(const LiveFrame& frame) {
@@ -359,7 +379,9 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   model.force_on = frame.facts.force_on;
   model.safety_text = safety_text(frame.safety_flags);
   model.drawing_text = budget_.text();
+  model.press = press_settings_;
   PanelAnswer answer = draw_panel(model, window_.theme(), shown_.panel_px);
+  if (answer.press) press_settings_ = *answer.press;
   if (!answer.refusal.empty()) messages_.add_problem(std::move(answer.refusal));
   for (Request& request : answer.requests) {
     if (const auto* change = std::get_if<ChangeView>(&request)) {
@@ -428,6 +450,7 @@ Pointer Editor::read_pointer() const {
   pointer.middle = io.MouseDown[2];
   pointer.ctrl = io.KeyCtrl;
   pointer.shift = io.KeyShift;
+  pointer.alt = io.KeyAlt;
   return pointer;
 }
 
@@ -473,7 +496,8 @@ void Editor::handle_pointer(const LiveFrame& frame, double seconds) {
 void Editor::drag_setting(const Pointer& pointer, const LiveFrame& frame) {
   if (pointer.moved_px.x() == 0.0) return;
   if (pointer.shift) {
-    strength_m_ = scale_by_drag(strength_m_, pointer.moved_px.x(), strength_range_m);
+    press_settings_.strength_m =
+        scale_by_drag(press_settings_.strength_m, pointer.moved_px.x(), press_strength_range_m);
     return;
   }
   Tool tool = frame.facts.tool;
@@ -516,7 +540,7 @@ void Editor::stroke(const Pointer& pointer, const LiveFrame& frame, const Viewpo
                    shown_.camera,
                    viewport,
                    &pick_,
-                   {radius, strength_m_, row_of(tool.action).grips}});
+                   {radius, press_settings_.strength_m, row_of(tool.action).grips}});
   inputs_.update(hand_, seconds);
 }
 
@@ -578,6 +602,21 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
       send(Command(SetSymmetry{symmetry}));
       break;
     }
+    case EditAction::toggle_reach: {
+      Tool tool = frame.facts.tool;
+      tool.reach = tool.reach == ToolReach::local ? ToolReach::whole : ToolReach::local;
+      say(tool.reach == ToolReach::local ? "Reach: local" : "Reach: whole body");
+      send(Command(SetTool{tool}));
+      break;
+    }
+    case EditAction::toggle_touch: {
+      Tool tool = frame.facts.tool;
+      tool.sideways = tool.sideways == ToolGlide::hold ? ToolGlide::slide : ToolGlide::hold;
+      say(tool.sideways == ToolGlide::hold ? "The pressed tool holds what it touches"
+                                           : "The pressed tool slides");
+      send(Command(SetTool{tool}));
+      break;
+    }
     case EditAction::toggle_recording:
       toggle_recording(frame);
       break;
@@ -599,6 +638,10 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
     default:
       act_on_view(action);
   }
+}
+
+void Editor::say(const char* text) {
+  messages_.add({Notice::Kind::information, text});
 }
 
 void Editor::act_on_view(EditAction action) {

@@ -14,6 +14,7 @@
 #include "app/edit/menu.h"
 #include "app/edit/mouse.h"
 #include "app/edit/prompts.h"
+#include "app/panel/panel.h"
 #include "app/session/view_choice.h"
 #include "engine/base/geometry.h"
 #include "haptic/space_mouse.h"
@@ -85,6 +86,7 @@ class Editor {
   void stroke(const Pointer& pointer, const LiveFrame& frame, const Viewport& viewport, double seconds);
   void act(EditAction action, const LiveFrame& frame);
   void act_on_view(EditAction action);
+  void say(const char* text);
   void set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_action);
   void set_overlays(const MenuChoice& choice);
   void place_plane(const LiveFrame& frame);
@@ -127,7 +129,7 @@ class Editor {
   MouseHand hand_;
   std::optional<SpaceMouse> space_mouse_;
   HandInputs inputs_;  // refers to hand_ and space_mouse_
-  double strength_m_ = 0.004;
+  PressSettings press_settings_;
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
   bool stroke_began_here_ = false;     // true if the left button was pressed on the picture
   FrameBudget budget_;

@@ -32,6 +32,8 @@ constexpr auto before_tools = std::to_array<KeyBinding>({
 
 constexpr auto after_tools = std::to_array<KeyBinding>({
     {Action::toggle_symmetry, GLFW_KEY_X, false, false, "X", "Symmetry"},
+    {Action::toggle_reach, GLFW_KEY_L, false, false, "L", "Reach: local or whole body"},
+    {Action::toggle_touch, GLFW_KEY_H, false, false, "H", "Pressed tool holds or slides"},
     {Action::place_plane, GLFW_KEY_P, false, false, "P", "Fixing plane at the tool"},
     {Action::remove_planes, GLFW_KEY_P, false, true, "Shift+P", "Remove fixing planes"},
     {Action::keep_shape, GLFW_KEY_K, false, false, "K", "Current shape as rest shape"},
@@ -84,9 +86,10 @@ constexpr auto bindings = [] {
   return all;
 }();
 
-constexpr std::array<HeldInput, 7> held_input_table = {{
+constexpr std::array<HeldInput, 8> held_input_table = {{
     {"Left button", "Stroke: press, then drag in the screen plane"},
     {"Wheel during a stroke", "Depth of the stroke, 1 mm per notch"},
+    {"Alt during a stroke", "Depth of the stroke: up is away"},
     {"Ctrl+left button", "Inverse action: pull for push, push for pull"},
     {"Shift+left button", "Smoothing"},
     {"F and drag", "Tool radius"},

@@ -26,6 +26,8 @@ enum class EditAction {
   cut_force,
   allow_force,
   toggle_symmetry,
+  toggle_reach,
+  toggle_touch,
   toggle_recording,
   screenshot,
   window_screenshot,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "render/tessellation/tool_mesh.h"
 
@@ -185,7 +186,8 @@ HandTarget MouseHand::next_target(const HandTarget&, double) {
   if (!is_stroking) must_release_ = false;
   const bool pressed = is_stroking && !must_release_;
   if (pressed && !press_) {
-    press_ = Press{hover_m_, inward_, project_to_screen_plane(ray, camera, hover_m_), 0.0, 0};
+    press_ =
+        Press{hover_m_, inward_, project_to_screen_plane(ray, camera, hover_m_), Vector3::Zero(), 0.0, 0};
   }
   if (!pressed) press_.reset();
   if (press_) {
@@ -193,8 +195,7 @@ HandTarget MouseHand::next_target(const HandTarget&, double) {
   } else {
     hover(ray, camera, *pick, stroke);
   }
-  const std::uint32_t gripping = stroke.grips ? button_main : 0U;
-  return {{target_m_, Quaternion::Identity()}, press_ ? gripping : button_hover};
+  return {{target_m_, Quaternion::Identity()}, press_ ? button_main : button_hover};
 }
 
 void MouseHand::release_press() {
@@ -224,9 +225,15 @@ void MouseHand::press(const Ray& ray, const Pointer& pointer, const Camera& came
   press.depth_m += depth_per_notch_m * pointer.wheel;
   const double fraction = static_cast<double>(press.frames) / frames_to_depth;
   const double depth_m = stroke.grips ? grip_depth_m : hover_gap_m + stroke.strength_m;
-  const Vector3 drag_m = project_to_screen_plane(ray, camera, press.anchor_m) - press.pointer_m;
-  const Vector3 away = -eye_axes(camera).col(2);
-  target_m_ = press.anchor_m + drag_m + fraction * depth_m * press.inward + press.depth_m * away;
+  const Eigen::Matrix3d axes = eye_axes(camera);
+  const Vector3 pointer_m = project_to_screen_plane(ray, camera, press.anchor_m);
+  const Vector3 moved_m = pointer_m - std::exchange(press.pointer_m, pointer_m);
+  if (pointer.alt) {
+    press.depth_m += moved_m.dot(axes.col(1));
+  } else {
+    press.drag_m += moved_m;
+  }
+  target_m_ = press.anchor_m + press.drag_m + fraction * depth_m * press.inward - press.depth_m * axes.col(2);
 }
 
 }  // namespace spoonbill

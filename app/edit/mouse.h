@@ -34,7 +34,7 @@ struct Pointer {
   Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // motion since the last frame
   double wheel = 0.0;  // turn of the wheel in notches, positive away from the user
   bool left = false, middle = false, right = false;  // true while the button is pressed
-  bool ctrl = false, shift = false;
+  bool ctrl = false, shift = false, alt = false;
 };
 
 enum class CameraMotion { none, orbit, pan, zoom };
@@ -101,8 +101,8 @@ struct MouseFrame {
 // The mouse as the hand that moves the tool. While hovering, the tool follows the pointer 1 mm above the
 // surface. Beside the body, it moves parallel to the screen, in the plane of its last position at the
 // surface. A press pushes the tool into the body within a quarter of a second, by MouseStroke::strength_m. A
-// drag then moves the tool parallel to the screen, and the wheel moves it in depth. One owner: the thread
-// that draws.
+// drag then moves the tool parallel to the screen. The wheel moves it in depth, and so does a drag with Alt:
+// up is away from the eye. The main button is down during a press. One owner: the thread that draws.
 class MouseHand : public InputSource {
  public:
   // The tool starts at rest at `start_m`. Until it has hovered over a body, it moves in the plane through
@@ -128,10 +128,10 @@ class MouseHand : public InputSource {
   struct Press {
     Vector3 anchor_m;  // position of the tool at the start of the press
     Vector3 inward;    // unit vector into the body; zero if the press began beside the body
-    // Point under the pointer at the start of the press, in the plane through anchor_m parallel to the
-    // screen.
+    // Point under the pointer in the last frame, in the plane through anchor_m parallel to the screen.
     Vector3 pointer_m;
-    double depth_m = 0.0;
+    Vector3 drag_m = Vector3::Zero();  // so far, parallel to the screen
+    double depth_m = 0.0;              // away from the eye
     int frames = 0;
   };
   void hover(const Ray& ray, const Camera& camera, const SurfacePick& pick, const MouseStroke& stroke);

@@ -28,11 +28,13 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.material = facts.material;
   model.region_count = facts.region_count;
   model.mass_kg = facts.mass_kg;
+  model.volume_change = snapshot.bodies.empty() ? 0.0 : snapshot.bodies.front().lattice.volume_change;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
     const double residual_m = snapshot.bodies[b].residual.largest_m;
     if (residual_m <= model.residual_m) continue;
     model.residual_m = residual_m;
     model.residual_body = static_cast<int>(b);
+    model.residual_is_at_limit = snapshot.bodies[b].residual.is_at_limit;
   }
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {
@@ -110,22 +112,39 @@ bool is_field(const Field<Object>& field, Value Object::*member) {
 // Returns true if the tool's action uses the field. A radius is used only by a sphere.
 bool uses_field(const Tool& tool, const Field<Tool>& field) {
   if (find_tool_parameter(tool.action, field.form.name) == nullptr) return false;
+  if (is_field(field, &Tool::local_radius_m)) return tool.is_local();
   return tool.kind == ToolKind::sphere || !is_field(field, &Tool::radius_m);
 }
 
 void draw_tool(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   constexpr const char* kinds[] = {"Point", "Sphere", "Solid"};
-  const RowGroup group("Tool", theme);
-  if (!group) return;
   Tool tool = model.tool;
+  const bool has_reach = tool.action != ToolAction::smooth;
+  bool is_local = tool.reach == ToolReach::local, holds = tool.sideways == ToolGlide::hold;
+  const std::array<HeadingSwitch, 2> switches = {{{"Local", &is_local}, {"Hold", &holds}}};
+  const RowGroup group("Tool", theme, std::span(switches).first(has_reach ? 2 : 0));
+  const ToolReach reach = is_local ? ToolReach::local : ToolReach::whole;
+  const ToolGlide sideways = holds ? ToolGlide::hold : ToolGlide::slide;
+  bool changed = reach != tool.reach || sideways != tool.sideways;
+  tool.reach = reach;
+  tool.sideways = sideways;
+  if (!group) return;
   int kind = static_cast<int>(tool.kind);
   int action = static_cast<int>(tool.action);
-  bool changed = choice_row("Kind", kind, std::span(kinds).first(tool.body ? 3 : 2));
+  changed |= choice_row("Kind", kind, std::span(kinds).first(tool.body ? 3 : 2));
   changed |= choice_row("Action", action, tool_action_labels);
   tool.kind = static_cast<ToolKind>(kind);
   tool.action = static_cast<ToolAction>(action);
+  if (model.press && tool.action == ToolAction::push) {
+    PressSettings press = *model.press;
+    if (field_row(fields_of<PressSettings>.front(), press, answer.refusal)) answer.press = press;
+  }
   for (const Field<Tool>& field : fields_of<Tool>) {
     const bool offered = uses_field(tool, field);
+    // The two share a place: a local stroke moves the material itself, without substeps.
+    if (is_field(field, &Tool::local_radius_m) ? !offered
+                                               : tool.is_local() && is_field(field, &Tool::substeps))
+      continue;
     ImGui::BeginDisabled(!offered);
     changed |= field_row(field, tool, answer.refusal, offered ? nullptr : "-");
     ImGui::EndDisabled();
@@ -167,10 +186,14 @@ void request_material(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// Returns the mass, and the number of regions with a material or friction of their own. Both share a row,
-// because the window is small.
+// Returns the mass, by how much strokes of local reach have changed the volume, and the number of regions
+// with a material or friction of their own. They share a row, because the window is small.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
+  constexpr double least_shown = 5e-4;
+  if (std::abs(model.volume_change) > least_shown) {
+    mass += (model.volume_change > 0.0 ? ", volume +" : ", volume ") + percent_text(model.volume_change);
+  }
   if (model.region_count == 0) return mass;
   return mass + ", " + std::to_string(model.region_count) +
          (model.region_count == 1 ? " region" : " regions");
@@ -196,8 +219,8 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
 }
 
 // Returns the text for the largest distance of a surface from the deformed lattice that it follows.
-std::string residual_text(double residual_m) {
-  return rounded_text(1e3 * residual_m, 3, " mm error");
+std::string residual_text(double residual_m, bool is_at_limit) {
+  return rounded_text(1e3 * residual_m, 3, is_at_limit ? " mm error, most knots" : " mm error");
 }
 
 // States what happens to bodies without fixed nodes, and offers to let them move freely.
@@ -218,7 +241,7 @@ void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& ans
                               (model.plane_count == 1 ? " plane" : " planes"));
   draw_unheld(model, answer);
   ImGui::BeginDisabled(!(model.residual_m > 0.0));
-  if (button_row("Surface", residual_text(model.residual_m), "Add knots")) {
+  if (button_row("Surface", residual_text(model.residual_m, model.residual_is_at_limit), "Add knots")) {
     answer.requests.emplace_back(Command(RefineKnots{model.residual_body}));
   }
   ImGui::EndDisabled();

@@ -30,6 +30,19 @@ struct TrialRows {
   std::vector<BodyRow> bodies;
 };
 
+// Settings of the mouse as a hand.
+struct PressSettings {
+  double strength_m = 0.004;  // depth of a press
+};
+
+inline constexpr Range<double> press_strength_range_m{0.0002, 0.02};
+
+template <>
+inline constexpr auto fields_of<PressSettings> = std::to_array<Field<PressSettings>>({
+    number_field("strength_mm", &PressSettings::strength_m, press_strength_range_m, FieldUnit::metre)
+        .with_slider({"Strength", {0.0005, 0.02}, true}),
+});
+
 // Contents of the panel, as plain data. Made once a frame from a snapshot and the settings; the panel has no
 // access to the simulation.
 struct PanelModel {
@@ -44,8 +57,11 @@ struct PanelModel {
   int region_count = 0;           // number of regions with a material or friction of their own
   std::vector<Material> presets;  // materials in the list of presets
 
+  std::optional<PressSettings> press;  // empty where there is no mouse
+
   double inertia_scale = 1.0;
-  double mass_kg = 0.0;  // mass of all bodies
+  double mass_kg = 0.0;        // mass of all bodies
+  double volume_change = 0.0;  // by which strokes have changed the first body's volume, as a fraction
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;
@@ -53,7 +69,8 @@ struct PanelModel {
   bool has_ground = false;
 
   double residual_m = 0.0;  // largest distance of a surface from the deformed lattice that it follows
-  int residual_body = 0;    // index in the scene of the body whose surface has this distance
+  bool residual_is_at_limit = false;  // see ResidualSnapshot::is_at_limit
+  int residual_body = 0;              // index in the scene of the body whose surface has this distance
 
   Overlays overlays;
   bool see_through_body = false;
@@ -91,6 +108,7 @@ double panel_scale(int height_px);
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;
+  std::optional<PressSettings> press = {};  // new settings of the mouse
 };
 
 // Lays out the panel, between InterfaceContext::begin_frame() and end_frame().

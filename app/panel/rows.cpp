@@ -199,11 +199,36 @@ void align_right(float width) {
 
 }  // namespace
 
-RowGroup::RowGroup(const char* heading, const Theme& theme) {
+namespace {
+
+void draw_switches(std::span<const HeadingSwitch> switches) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  // Without padding, the checkboxes are no higher than the heading.
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(style.FramePadding.x, 0.0F));
+  float width = 0.0F;
+  for (const HeadingSwitch& each : switches) {
+    width += ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(each.name).x;
+    if (&each != &switches.back()) width += style.ItemSpacing.x;
+  }
+  for (const HeadingSwitch& each : switches) {
+    if (&each == &switches.front()) {
+      ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - width);
+    } else {
+      ImGui::SameLine();
+    }
+    ImGui::Checkbox(each.name, each.on);
+  }
+  ImGui::PopStyleVar();
+}
+
+}  // namespace
+
+RowGroup::RowGroup(const char* heading, const Theme& theme, std::span<const HeadingSwitch> switches) {
   ImGui::Dummy(ImVec2(0.0F, 0.1F * theme.metrics.heading_px));
   ImGui::PushFont(theme.fonts.heading);
   ImGui::TextUnformatted(heading);
   ImGui::PopFont();
+  draw_switches(switches);
   ImGui::Separator();
   open_ = ImGui::BeginTable(heading, 2, ImGuiTableFlags_SizingFixedFit);
   if (!open_) return;

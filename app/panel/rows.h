@@ -24,10 +24,17 @@ std::string quantity_text(const FieldForm& form, double value);
 // range are errors that name the units or the range.
 Result<double> read_quantity(const FieldForm& form, const std::string& typed, const std::string& shown);
 
+// A checkbox beside a heading. `on` must not be null.
+struct HeadingSwitch {
+  const char* name;
+  bool* on;
+};
+
 // A group of rows under a heading, open for the lifetime of the object.
 class RowGroup {
  public:
-  RowGroup(const char* heading, const Theme& theme);
+  // Draws the switches at the right end of the heading's line, from left to right.
+  RowGroup(const char* heading, const Theme& theme, std::span<const HeadingSwitch> switches = {});
   ~RowGroup();
   RowGroup(const RowGroup&) = delete;
   RowGroup& operator=(const RowGroup&) = delete;

@@ -53,6 +53,13 @@ ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const Vi
   return {centre, pixels_at(view, centre, smallest_tool_px)};
 }
 
+ToolSphere tool_with_ring(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
+  ToolSphere tool = tool_sphere(view, snapshot, settings);
+  if (!settings.overlays.tool) return tool;
+  tool.ring_m << snapshot.tool.local_point_m.cast<float>(), static_cast<float>(snapshot.tool.local_radius_m);
+  return tool;
+}
+
 SurfaceDrawing choose_drawing(const BodySnapshot& body, const ViewSettings& settings) {
   SurfaceDrawing drawing;
   drawing.look = find_material_look(body.material.name);
@@ -142,7 +149,7 @@ void ScenePasses::draw(const FrameView& view, const FrameView& scene_view, const
 
 void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                              const BodyMeshes& bodies) {
-  const ToolSphere tool = tool_sphere(view, snapshot, settings);
+  const ToolSphere tool = tool_with_ring(view, snapshot, settings);
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
   const auto draw_bodies = [&](bool are_clear) {
     for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {

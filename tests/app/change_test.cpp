@@ -52,6 +52,12 @@ TEST(ChangeCommand, EachChangeDoesWhatItSays) {
   change({"simplify"});
   expect_same_surface(1e-5);
   EXPECT_LT(after().v.control_point_count(), before.v.control_point_count());
+  const double rebuilt_m = change({"rebuild", "--control", "14x24"})["deviation_m"].get<double>();
+  EXPECT_GT(rebuilt_m, 1e-5);
+  EXPECT_LT(rebuilt_m, 1e-3);
+  expect_same_surface(rebuilt_m);
+  EXPECT_EQ(after().u.control_point_count(), 14);
+  EXPECT_EQ(after().v.control_point_count(), 24);
   change({"reverse", "v"});
   EXPECT_LT((position(after(), 0.2, 10.0) - position(before, 0.2, 90.0)).norm(), 1e-15);
   change({"exchange"});
@@ -120,6 +126,11 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"split"}, exit_wrong_use, "must have the form: split v=0.5"},
       {{"split", "v=1", "2"}, exit_wrong_use, "must have the form: split v=0.5"},
       {{"simplify", "u"}, exit_wrong_use, "must have the form: simplify"},
+      {{"rebuild"}, exit_wrong_use, "rebuild: needs --control"},
+      {{"simplify", "--control", "20x20"}, exit_wrong_use, "applies only to 'rebuild'"},
+      {{"rebuild", "--control", "20x20"}, exit_failed, "must be from 2 to the 16"},
+      {{"rebuild", "--control", "16x3"}, exit_failed, "must be from 4 to the 31"},
+      {{"rebuild", "--control", "20"}, exit_wrong_use, "--control"},
       {{"degree", "v", "12"}, exit_wrong_use, "'12' is not a whole number from 1 to 9"},
       {{"degree", "v", "2.5"}, exit_wrong_use, "not a whole number"},
       {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},

@@ -229,6 +229,32 @@ TEST_F(BendPictures, WhatMustShowShows) {
   }
 }
 
+// Finger ridges and dents of local strokes, as in Fig. 8 of Pungotra et al. (2013), and a bent handle with
+// ridges.
+class GripPictures : public MomentPictures {
+ protected:
+  static constexpr Moment pulled{"grip-pulled", 0.33, "grip-bulge"};
+  static constexpr Moment bulges{"grip-bulge", 1.0, "grip-bulge"};
+  static constexpr Moment dents{"grip-dent", 1.0, "grip-dent"};
+  static constexpr Moment bent{"bent-grips", 1.0, "bent-grips"};
+};
+
+TEST_F(GripPictures, Pulled) {
+  compare_moment(pulled);
+}
+
+TEST_F(GripPictures, Bulges) {
+  compare_moment(bulges);
+}
+
+TEST_F(GripPictures, Dents) {
+  compare_moment(dents);
+}
+
+TEST_F(GripPictures, Bent) {
+  compare_moment(bent);
+}
+
 class ContactPictures : public MomentPictures {
  protected:
   static constexpr const char* sphere = "contact-stages";
