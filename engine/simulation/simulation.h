@@ -23,8 +23,9 @@ namespace spoonbill {
 
 inline constexpr double tick_s = 1e-3;
 
-// A net with this many control points is not refined by itself: moving it would take too much of a tick.
-inline constexpr int refined_control_point_limit = 2400;
+// A net is not refined by itself to more control points than this. With more, the search for self-contact
+// takes so long that a tick of the bundled handle needs more than a millisecond.
+inline constexpr int refined_control_point_limit = 1100;
 
 // See Simulation::is_gone().
 inline constexpr double gone_distance_m = 1.0;

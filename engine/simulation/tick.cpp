@@ -312,6 +312,19 @@ double find_residual_tolerance_m(const Simulation::State& s, const BodyState& bo
   return std::max({least_m, of_radius * radius_m, of_cell * static_cast<double>(body.lattice.cell_size_m())});
 }
 
+// Returns the number of elements that overlap the range; 0 without a range.
+int count_elements(const KnotVector& knots, const std::optional<Range<double>>& range) {
+  if (!range) return 0;
+  const std::vector<double>& all = knots.extended_knots();
+  int count = 0;
+  for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+    const bool is_element =
+        all[k] < all[k + 1] && all[k] >= knots.domain_start() && all[k + 1] <= knots.domain_end();
+    if (is_element && all[k] <= range->high && all[k + 1] >= range->low) ++count;
+  }
+  return count;
+}
+
 // Returns the refinement that brings a surface that is behind its lattice closer to it; empty if none can. It
 // halves elements along their longer side, or along both sides if these differ by less than half. Elements
 // shorter than half a cell do not follow the lattice better.
@@ -325,8 +338,10 @@ std::optional<RefineKnots> find_refinement(const BodyState& body, int index) {
   if (u_m >= shortest_m && similar * u_m >= v_m) refinement.u = residual.u_range;
   if (v_m >= shortest_m && similar * v_m >= u_m) refinement.v = residual.v_range;
   if (!refinement.u && !refinement.v) return std::nullopt;
-  const ControlNet& net = body.mapping().current().net;
-  if (net.rows * net.columns >= refined_control_point_limit) return std::nullopt;
+  const Surface& surface = body.mapping().current();
+  const int rows = surface.net.rows + count_elements(surface.u, refinement.u);
+  const int columns = surface.net.columns + count_elements(surface.v, refinement.v);
+  if (rows * columns > refined_control_point_limit) return std::nullopt;
   return refinement;
 }
 
