@@ -15,6 +15,9 @@ bool replaces_build(const Command& command) {
 EditHistory::EditHistory(const Simulation& simulation) : untouched_{simulation.shape(), 0} {
   std::size_t bytes = 1;
   for (const std::vector<float>& lattice : untouched_.shape.lattices) bytes += lattice.size() * sizeof(float);
+  // A build is mostly lattice: about 13 arrays of 13 directions, for a node of about 30 values of a shape.
+  constexpr std::size_t build_of_shape = 10;
+  most_builds_ = std::clamp<std::size_t>(build_memory_limit_bytes / (build_of_shape * bytes), 2, build_limit);
   states_.assign(std::clamp<std::size_t>(memory_limit_bytes / bytes, 3, shape_limit), untouched_);
 }
 
@@ -52,8 +55,8 @@ void EditHistory::begin_step(const State& before) {
 Status EditHistory::apply(Simulation& simulation, const Command& command) {
   const auto* const refine = std::get_if<RefineKnots>(&command);
   const auto* const material = std::get_if<SetMaterial>(&command);
-  const bool belongs_to_last = (refine != nullptr && (refine->u || refine->v)) ||
-                               (material != nullptr && material->body == material_body_ && is_open_);
+  const bool belongs_to_last = is_open_ && ((refine != nullptr && (refine->u || refine->v)) ||
+                                            (material != nullptr && material->body == material_body_));
   const State before{simulation.shape(), live_build_};
   std::shared_ptr<SimulationBuild> build = simulation.copy_build();
   if (Status applied = simulation.apply(command); !applied) return applied;
@@ -124,7 +127,7 @@ void EditHistory::drop_unused_builds() {
     });
   };
   drop();
-  while (builds_.size() > build_limit && current_ > 0) {
+  while (builds_.size() > most_builds_ && current_ > 0) {
     drop_oldest();
     --current_;
     --count_;

@@ -28,8 +28,10 @@ class EditHistory {
   // Largest number of stored shapes. The memory limit allows fewer shapes of large bodies, but at least 3.
   static constexpr std::size_t shape_limit = 64;
   static constexpr std::size_t memory_limit_bytes = std::size_t{64} << 20;
-  // Largest number of stored builds, which are larger than shapes. The oldest steps go first.
+  // Largest number of stored builds. The memory limit allows fewer builds of large bodies, but at least 2.
+  // The oldest steps go first.
   static constexpr std::size_t build_limit = 24;
+  static constexpr std::size_t build_memory_limit_bytes = std::size_t{512} << 20;
 
   explicit EditHistory(const Simulation& simulation);
 
@@ -37,8 +39,8 @@ class EditHistory {
   void after_tick(const Simulation& simulation, bool touching);
 
   // Applies a command of which replaces_build() is true, as a step. A refinement of the knots in given ranges
-  // belongs to the step before it, and so does another material of a body whose material the last step
-  // changed. An error changes nothing.
+  // belongs to an open step, and so does another material of a body whose material this step changed. An
+  // error changes nothing.
   Status apply(Simulation& simulation, const Command& command);
 
   // undo() restores the state before the last step, redo() the state after the next step. Each does nothing
@@ -51,6 +53,9 @@ class EditHistory {
   bool can_undo() const { return is_open_ || current_ > 0; }
   bool can_redo() const { return !is_open_ && current_ + 1 < count_; }
   bool in_stroke() const { return touching_; }
+  // Returns true after a step until undo(), redo() or cancel(). The program refines knots only then, so that
+  // an undo takes them back and no redo is lost.
+  bool has_open_step() const { return is_open_; }
   // Each returns whether the function exchanges builds, which takes milliseconds and allocates.
   bool undo_needs_build() const;
   bool redo_needs_build() const { return can_redo() && states_[current_ + 1].build != live_build_; }
@@ -80,6 +85,7 @@ class EditHistory {
   // Builds by number, except the one that the simulation has.
   std::map<std::uint64_t, std::shared_ptr<SimulationBuild>> builds_;
   std::uint64_t live_build_ = 0, last_build_ = 0;
+  std::size_t most_builds_ = build_limit;
 
   bool touching_ = false;
   int ticks_since_touch_ = 0;

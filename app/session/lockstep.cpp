@@ -82,14 +82,11 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
-Status Lockstep::apply_and_record(const Command& command) {
-  if (Status applied = apply_request(*session_, command); !applied) return applied;
-  return writer_ != nullptr ? writer_->command(command_to_json(command)) : Status();
-}
-
 // Resets the proxy and records the reset, so that the recording replays without the device.
 Status Lockstep::reset_proxy() {
-  return apply_and_record(ResetProxy{});
+  const Command command = ResetProxy{};
+  if (Status applied = session_->simulation.apply(command); !applied) return applied;
+  return writer_ != nullptr ? writer_->command(command_to_json(command)) : Status();
 }
 
 Status Lockstep::refine_when_due() {
@@ -101,8 +98,11 @@ Status Lockstep::refine_when_due() {
   }
   if (tick_ < refinement_tick_) return {};
   const RefineKnots refinement = *std::exchange(refinement_, std::nullopt);
-  // An undo may have given the body fewer knots since, and then it is no longer wanted.
-  return session_->simulation.wanted_refinement() ? apply_and_record(refinement) : Status();
+  // An undo may have come in between, and then the refinement is no longer wanted.
+  if (!session_->history.has_open_step() || !session_->simulation.wanted_refinement()) return {};
+  // A refinement that cannot be made leaves the surface as it is.
+  if (!apply_request(*session_, Command(refinement))) return {};
+  return writer_ != nullptr ? writer_->command(command_to_json(refinement)) : Status();
 }
 
 Status Lockstep::run_tick() {

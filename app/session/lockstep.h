@@ -69,8 +69,6 @@ class Lockstep {
   Status apply_due_commands();
   Status run_tick();
   Status reset_proxy();
-  // Applies a command and records it.
-  Status apply_and_record(const Command& command);
   Status refine_when_due();
 
   Session* session_;

@@ -351,6 +351,7 @@ void CommandApplier::set_skins(std::vector<SkinMapping> skins) {
     state.bodies[b].skin = std::move(skins[b]);
     if (!state.bodies[b].mesh()) state.scene.bodies[b].surface = state.bodies[b].mapping().current();
   }
+  state.wanted_refinement.reset();
   make_contacts(state);
 }
 

@@ -37,7 +37,7 @@ double march_over(double a, double b, const Vector3& to_a, const Vector3& to_b) 
   // The front comes through the triangle if the gradient points from inside it to the vertex.
   const double da = t - a, db = t - b;
   const bool comes_through = da * bb - db * ab > 0.0 && db * aa - da * ab > 0.0;
-  return comes_through ? t : along_edge;
+  return comes_through ? std::max({t, a, b}) : along_edge;
 }
 
 }  // namespace
@@ -178,19 +178,9 @@ void LocalStroke::march(const BodyState& state, const CoarseGrid& whole, const T
       if (ring[n] < 0 || distance_m_[static_cast<std::size_t>(ring[n])] <= distance) continue;
       reach(ring[n], find_distance(mapping, index, ring, n));
     }
-    const auto point_or_here = [&](int neighbour) {
-      return neighbour < 0 ? sample.point_m : mapping.embedded_rest_m(neighbour);
-    };
-    const Vector3 along_u = point_or_here(ring[0]) - point_or_here(ring[4]);
-    const Vector3 along_v = point_or_here(ring[2]) - point_or_here(ring[6]);
-    sample.normal = along_u.cross(along_v);
-    const double length = sample.normal.norm();
-    if (length > 0.0) sample.normal /= length;
+    sample.normal = unit_normal(mapping.rest(), samples.u.parameters[static_cast<std::size_t>(r)],
+                                samples.v.parameters[static_cast<std::size_t>(c)]);
     region_.push_back(sample);
-  }
-  // The normals point out of the body like the one at the touched point.
-  if (!region_.empty() && region_.front().normal.dot(at.normal) < 0.0) {
-    for (Sample& sample : region_) sample.normal = -sample.normal;
   }
 }
 

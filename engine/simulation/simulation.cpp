@@ -315,8 +315,14 @@ void Simulation::write_shape(ShapeState& shape) const {
   shape.lattices.resize(state_->scene.bodies.size());
   shape.poses.resize(state_->scene.bodies.size());
   shape.hands.resize(state_->scene.bodies.size());
+  shape.solver_rests.resize(state_->scene.bodies.size());
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     state_->bodies[b].lattice.write_shape(shape.lattices[b]);
+    if (const ImplicitSolver* const solver = state_->bodies[b].solver()) {
+      shape.solver_rests[b].assign(solver->rest_m().begin(), solver->rest_m().end());
+    } else {
+      shape.solver_rests[b].clear();
+    }
     if (!state_->bodies[b].rigid) continue;
     shape.poses[b] = state_->bodies[b].rigid->pose();
     shape.hands[b] = state_->bodies[b].rigid->motion().end;
@@ -343,7 +349,10 @@ std::shared_ptr<SimulationBuild> Simulation::exchange_build(std::shared_ptr<Simu
   std::swap(build->planes, state_->scene.planes);
   state_->wanted_refinement.reset();
   update_inertia(*state_);
+  const ToolContact tool = std::move(state_->tool.contact), mirrored = std::move(state_->mirrored.contact);
   make_contacts(*state_);
+  state_->tool.contact.keep_suspension(tool);
+  state_->mirrored.contact.keep_suspension(mirrored);
   return build;
 }
 
@@ -352,7 +361,10 @@ Status Simulation::restore(const ShapeState& shape) {
   bool fits = shape.lattices.size() == state_->scene.bodies.size() &&
               shape.poses.size() == state_->scene.bodies.size() && shape.hands.size() == shape.poses.size();
   for (std::size_t b = 0; fits && b < shape.lattices.size(); ++b) {
-    fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size();
+    const ImplicitSolver* const solver = state_->bodies[b].solver();
+    fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size() &&
+           (!solver ||
+            (b < shape.solver_rests.size() && shape.solver_rests[b].size() == solver->rest_m().size()));
   }
   if (!fits) return Error{ErrorCode::mismatch, "shape: belongs to another lattice"};
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
@@ -363,7 +375,10 @@ Status Simulation::restore(const ShapeState& shape) {
       if (body.rigid->hand()) body.rigid->place_hand(shape.hands[b]);
     }
     body.lowering_m_per_s = 0.0;
-    if (body.solver()) body.solver()->adopt_shape(body.lattice);
+    if (body.solver()) {
+      body.solver()->restore_rest(shape.solver_rests[b]);
+      body.solver()->adopt_shape(body.lattice);
+    }
     if (!body.mesh()) body.mapping().finish_catching_up();
     body.update_skin();
   }
@@ -373,6 +388,7 @@ Status Simulation::restore(const ShapeState& shape) {
   state_->searched.forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();
+  state_->wanted_refinement.reset();
   return {};
 }
 

@@ -58,6 +58,9 @@ struct ShapeState {
   std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   std::vector<Pose> poses = {};              // pose of each body that is rigid; the default pose for others
   std::vector<Pose> hands = {};              // pose of the hand that holds each body; the default for others
+  // Rest positions of the nodes of each body with an implicit solver, which smoothing and local strokes move;
+  // empty for others.
+  std::vector<std::vector<Vector3>> solver_rests = {};
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 

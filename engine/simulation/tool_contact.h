@@ -66,6 +66,11 @@ class ToolContact {
   // not near a body (see acts()) or hovers outside the bodies.
   void lift();
   bool lifted() const { return lifted_; }
+  // Takes over whether another contact of the same tool was suspended.
+  void keep_suspension(const ToolContact& other) {
+    lifted_ = other.lifted_;
+    hovered_ = other.hovered_;
+  }
   bool hovered() const { return hovered_; }
 
   ContactConstraints& constraints() { return constraints_; }

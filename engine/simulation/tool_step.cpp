@@ -83,10 +83,12 @@ void reform_locally(Simulation::State& s, HeldTool& held) {
   const int number = held.contact.deepest_body();
   const bool pulls = s.scene.tool.action == ToolAction::pull;
   const CollisionResult& collision = held.contact.collision(number);
-  if (constraints.count() == 0 ||
-      !(pulls ? held.contact.gripped() : constraints.acted() && collision.found)) {
+  const bool is_rigid = s.bodies[static_cast<std::size_t>(number)].rigid.has_value();
+  if (constraints.count() == 0 || is_rigid || !(pulls ? held.contact.gripped() : collision.found)) {
     return stroke.end();
   }
+  // A light touch may push in some ticks only.
+  if (!pulls && !constraints.acted()) return stroke.relax(tick_s);
   const SurfaceContact& nearest = collision.nearest;
   // A tool that slides shapes the material where it is now. Where it is, its position tells, because the
   // surface may be behind the material.
@@ -95,9 +97,8 @@ void reform_locally(Simulation::State& s, HeldTool& held) {
     const Vector3 moved_m = held.state.position_m - stroke.tool_start_m();
     return (moved_m - moved_m.dot(nearest.normal) * nearest.normal).norm() > same_place * stroke.radius_m();
   };
-  if (!stroke.is_active() || (!pulls && has_slid())) {
+  if (!stroke.is_active() || (!pulls && (number != stroke.body() || has_slid()))) {
     BodyState& touched = s.bodies[static_cast<std::size_t>(number)];
-    if (touched.rigid) return;
     stroke.begin({number, nearest.u, nearest.v, held.state.position_m}, touched,
                  choose_local_radius_m(s.scene.tool, touched));
   }

@@ -178,6 +178,18 @@ TEST(EditHistory, ChangesOfOneMaterialAreOneStep) {
   EXPECT_FALSE(touched.history.can_undo());
 }
 
+// A refinement belongs to a step. After a cancelled stroke there is none, and none is wanted.
+TEST(EditHistory, ACancelledStrokeRefinesNothing) {
+  Touched touched;
+  touched.press();
+  ASSERT_TRUE(touched.history.in_stroke());
+  ASSERT_TRUE(touched.history.cancel(touched.simulation));
+  EXPECT_FALSE(touched.simulation.wanted_refinement());
+  EXPECT_FALSE(touched.history.has_open_step());
+  ASSERT_TRUE(touched.history.apply(touched.simulation, RefineKnots{0, Range<double>{0.4, 0.6}, {}}));
+  EXPECT_TRUE(touched.history.can_undo()) << "asked for outside a step, it is a step";
+}
+
 TEST(EditHistory, ARefusedCommandIsNoStep) {
   Touched touched;
   EXPECT_FALSE(touched.history.apply(touched.simulation, RefineKnots{5}));

@@ -139,7 +139,7 @@ Result<ImplicitSolver> ImplicitSolver::make(const LatticeMesh& mesh, const std::
   double mass_kg = 0.0;
   for (int n = 0; n < coarse->node_count(); ++n) mass_kg += body->mass_kg(n);
   ImplicitSolver solver(std::move(body).value(), mesh.node_count(), mass_kg);
-  solver.rest_m_ = rest_m;
+  solver.rest_m_ = solver.first_rest_m_ = rest_m;
   for (int n = 0; n < mesh.node_count(); ++n) {
     solver.by_index_.push_back(embed_node(mesh, n, coarse.value()));
     solver.followers_.push_back(solver.by_index_.back());
@@ -190,12 +190,19 @@ void ImplicitSolver::adopt_shape(const SpringLattice& lattice) {
     const GridPoint at = embed_node(body_.mesh(), n, lattice.mesh());
     Vector3 position = Vector3::Zero(), velocity = Vector3::Zero();
     for (std::size_t c = 0; c < 8; ++c) {
-      position += at.weight[c] * lattice.position(at.node[c]);
+      // Permanent moves of nodes do not move the block.
+      const auto node = static_cast<std::size_t>(at.node[c]);
+      position += at.weight[c] * (lattice.position(at.node[c]) - (rest_m_[node] - first_rest_m_[node]));
       velocity += at.weight[c] * lattice.velocity(at.node[c]);
     }
     body_.set_displacement(n, position - body_.mesh().nodes[static_cast<std::size_t>(n)]);
     body_.set_velocity(n, velocity);
   }
+}
+
+void ImplicitSolver::restore_rest(std::span<const Vector3> rest_m) {
+  SPOONBILL_ASSERT(rest_m.size() == rest_m_.size());
+  std::copy(rest_m.begin(), rest_m.end(), rest_m_.begin());
 }
 
 void ImplicitSolver::adopt_moved_nodes(const SpringLattice& lattice) {

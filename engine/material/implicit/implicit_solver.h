@@ -69,6 +69,9 @@ class ImplicitSolver {
   void fix_nodes(std::span<const std::uint8_t> fixed);
   // Sets the displacements and velocities of the hexahedral block from those of the lattice.
   void adopt_shape(const SpringLattice& lattice);
+  // Sets the rest positions of the lattice's nodes to those that rest_m() has returned. adopt_shape() must
+  // follow. Allocates nothing.
+  void restore_rest(std::span<const Vector3> rest_m);
 
   // Moves the hexahedral block rigidly, and the lattice that follows it. No node may be fixed.
   void move_rigidly(const RigidMove& move, SpringLattice& lattice);
@@ -152,7 +155,8 @@ class ImplicitSolver {
   bool is_fixed_by(int node, std::span<const int> nodes) const;
 
   ImplicitBody body_;
-  std::vector<Vector3> rest_m_;  // rest positions of the lattice's nodes
+  std::vector<Vector3> rest_m_;        // rest positions of the lattice's nodes
+  std::vector<Vector3> first_rest_m_;  // those of make(), where the block is unstrained
   // Each lattice node as a weighted sum of block nodes: at its exact position, and at its grid indices. The
   // latter decides which block nodes a fixed lattice node fixes.
   std::vector<GridPoint> followers_, by_index_;

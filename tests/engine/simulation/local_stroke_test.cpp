@@ -137,6 +137,30 @@ TEST(LocalStroke, LeavesNothingThatSpringsBack) {
   EXPECT_NEAR(simulation.lattice().fastest_m_per_s(), 0.0, 1e-5);
 }
 
+// A stiff body is moved by an implicit solver, which has a rest shape of its own.
+TEST(LocalStroke, IsUndoneOnAStiffBodyToo) {
+  Scene scene = local_scene(ToolAction::push, 0.006);
+  Material& material = scene.bodies[0].material;
+  material.plastic = false;
+  material.youngs_modulus_pa = 1e9;
+  scene.planes = {{Vector3(0.01, 0, 0), Vector3::UnitX()}};
+  Simulation simulation = simulate(scene);
+  simulation.advance(far_away);
+  const ShapeState before = simulation.shape();
+  press(simulation, 0.001);
+  const Moved shaped = measure(simulation, 0.02);
+  EXPECT_GT(shaped.inward_m, 5e-4);
+  const ShapeState after = simulation.shape();
+  for (int k = 0; k < 2; ++k) {
+    ASSERT_TRUE(simulation.restore(before).ok());
+    for (int t = 0; t < 50; ++t) simulation.advance(far_away);
+    EXPECT_LT(measure(simulation, 0.02).inward_m, 1e-5) << k;
+    ASSERT_TRUE(simulation.restore(after).ok());
+    for (int t = 0; t < 50; ++t) simulation.advance(far_away);
+    EXPECT_NEAR(measure(simulation, 0.02).inward_m, shaped.inward_m, 5e-5) << k;
+  }
+}
+
 TEST(LocalStroke, HasTheRadiusThatIsAsked) {
   double narrow_m = 0.0;
   for (const double radius_m : {0.004, 0.008}) {
