@@ -220,7 +220,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
 
 // Returns the text for the largest distance of a surface from the deformed lattice that it follows.
 std::string residual_text(double residual_m, bool is_at_limit) {
-  return rounded_text(1e3 * residual_m, 3, is_at_limit ? " mm error, most knots" : " mm error");
+  return rounded_text(1e3 * residual_m, 3, is_at_limit ? " mm, most knots" : " mm error");
 }
 
 // States what happens to bodies without fixed nodes, and offers to let them move freely.

@@ -103,6 +103,8 @@ void LocalStroke::carry_over(const LocalStroke& other) {
   point_ = other.point_;
   radius_m_ = other.radius_m_;
   elastic_m_ = other.elastic_m_;
+  is_spent_ = other.is_spent_;
+  share_ = other.share_;
   nodes_.assign(other.nodes_.begin(), other.nodes_.end());
 }
 
@@ -110,6 +112,7 @@ void LocalStroke::begin(const ToolSpot& touch, const BodyState& state, double ra
   SPOONBILL_ASSERT(touch.body >= 0 && radius_m > 0.0);
   if (!is_active()) elastic_m_ = 0.0;
   touch_ = touch;
+  is_spent_ = false;
   point_ = state.mapping().at(touch.u, touch.v);
   radius_m_ = radius_m;
   const TouchedPoint at{touch.u, touch.v, point_.rest_m(state.lattice),
@@ -117,6 +120,12 @@ void LocalStroke::begin(const ToolSpot& touch, const BodyState& state, double ra
   CoarseGrid grid(state.mapping());
   march(state, grid, at);
   weigh_nodes(state, at, find_thickness_m(state, grid, at));
+  share_ = 0.0;
+  for (int c = 0; c < point_.count; ++c) {
+    for (const WeighedNode& node : nodes_) {
+      if (node.node == point_.node[c]) share_ += static_cast<double>(point_.weight[c]) * node.weight;
+    }
+  }
 }
 
 // Measures distances along the surface from the touched point to the samples within the radius.
@@ -260,9 +269,16 @@ void LocalStroke::weigh_nodes(const BodyState& state, const TouchedPoint& at, do
 
 void LocalStroke::move(SpringLattice& lattice, const Vector3& move_m) {
   SPOONBILL_ASSERT(is_active());
+  if (is_spent_) return;
   const Vector3 before_m = point_m(lattice);
   for (const WeighedNode& node : nodes_) lattice.reform(node.node, node.weight * move_m);
-  elastic_m_ += (point_m(lattice) - before_m).norm();
+  const double moved_m = (point_m(lattice) - before_m).norm();
+  elastic_m_ += moved_m;
+  // If only nodes beside the touched point still moved, the surface would become uneven. Shorter moves are
+  // lost in the rounding of displacements.
+  constexpr double least_part = 0.5, least_move_m = 2e-7;
+  const double asked_m = share_ * move_m.norm();
+  is_spent_ = asked_m > least_move_m && moved_m < least_part * asked_m;
 }
 
 void LocalStroke::relax(double time_s) {

@@ -53,7 +53,8 @@ class LocalStroke {
   const Vector3& tool_start_m() const { return touch_.tool_m; }
 
   // Moves the touched point by `move_m` and the nodes around it by their weights, in the body of begin(). A
-  // node whose springs or cells cannot take the new shape stays (SpringLattice::reform()).
+  // node whose springs or cells cannot take the new shape stays (SpringLattice::reform()). Once the touched
+  // point itself hardly moves, the stroke moves nothing until the next begin().
   void move(SpringLattice& lattice, const Vector3& move_m);
 
   // Lets the material take its new place for `time_s`: the elastic depth, in which move() has put it, decays
@@ -75,6 +76,8 @@ class LocalStroke {
     for (const double* value : {&touch_.u, &touch_.v}) visit(value, 1);
     visit(touch_.tool_m.data(), 3);
     for (const double* value : {&radius_m_, &elastic_m_}) visit(value, 1);
+    const double spent = is_spent_ ? 1.0 : 0.0;
+    visit(&spent, 1);
   }
 
  private:
@@ -105,6 +108,8 @@ class LocalStroke {
   ToolSpot touch_;
   EmbeddedPoint point_;  // the touched point
   double radius_m_ = 0.0, elastic_m_ = 0.0;
+  double share_ = 0.0;     // part of a move that the touched point makes: the mean weight of its nodes
+  bool is_spent_ = false;  // true if the material takes no further move
   std::vector<WeighedNode> nodes_;
   // Working memory: distances and states of all samples of a body, a heap of distances and samples, and the
   // samples within the radius.
