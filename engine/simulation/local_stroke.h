@@ -111,8 +111,8 @@ class LocalStroke {
   double share_ = 0.0;     // part of a move that the touched point makes: the mean weight of its nodes
   bool is_spent_ = false;  // true if the material takes no further move
   std::vector<WeighedNode> nodes_;
-  // Working memory: distances and states of all samples of a body, a heap of distances and samples, and the
-  // samples within the radius.
+  // Working memory: distances of all samples of a body, a heap of distances and samples, and the samples
+  // within the radius.
   std::vector<float> distance_m_;
   std::vector<std::pair<float, int>> heap_;
   std::vector<Sample> region_;

@@ -93,8 +93,8 @@ struct MaterialSnapshot {
   double lattice_mass_kg = 0.0;  // mass of the lattice, which ignores the trims of the body
 };
 
-// Part of the lattice's displacement that a body's surface does not follow. The displacement is measured from
-// the last change of the body's knots, fixing planes or rest shape.
+// Part of the lattice's displacement that a body's surface does not follow, where the surface is free to
+// move.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;

@@ -178,7 +178,7 @@ TEST(EditHistory, ChangesOfOneMaterialAreOneStep) {
   EXPECT_FALSE(touched.history.can_undo());
 }
 
-// A refinement belongs to a step. After a cancelled stroke there is none, and none is wanted.
+// A refinement belongs to a step. A cancelled stroke leaves no step, and requests no refinement.
 TEST(EditHistory, ACancelledStrokeRefinesNothing) {
   Touched touched;
   touched.press();
