@@ -55,19 +55,17 @@ double own_compliance(const BodyPoint& point) {
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
   if (first.body != second.body) return own_compliance(first) + own_compliance(second);
   const SpringLattice& lattice = *first.lattice;
-  double sum = 0.0;
+  WeightedCompliance compliance;
   for (int i = 0; i < first.point.count; ++i) {
     const int node = first.point.node[i];
-    const double fraction = first.point.weight[i] - second.point.weight_of_node(node);
-    sum += fraction * fraction * static_cast<double>(lattice.inverse_mass(node));
+    compliance.add(first.point.weight[i] - second.point.weight_of_node(node), lattice.inverse_mass(node));
   }
   for (int i = 0; i < second.point.count; ++i) {
     const int node = second.point.node[i];
     if (first.point.weight_of_node(node) != 0.0) continue;
-    const double fraction = second.point.weight[i];
-    sum += fraction * fraction * static_cast<double>(lattice.inverse_mass(node));
+    compliance.add(second.point.weight[i], lattice.inverse_mass(node));
   }
-  return sum;
+  return compliance.per_kg();
 }
 
 // Returns the relative velocity change of two lattices' frames per impulse between the lattices, 1/kg.

@@ -60,12 +60,9 @@ namespace {
 
 template <class InverseMassOf>
 double sum_compliance(const EmbeddedPoint& point, const InverseMassOf& inverse_mass_of) {
-  double sum = 0.0;
-  for (int i = 0; i < point.count; ++i) {
-    const double fraction = point.weight[i];
-    sum += fraction * fraction * inverse_mass_of(point.node[i]);
-  }
-  return sum;
+  WeightedCompliance compliance;
+  for (int i = 0; i < point.count; ++i) compliance.add(point.weight[i], inverse_mass_of(point.node[i]));
+  return compliance.per_kg();
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // Points of a body as weighted sums of its lattice's nodes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/material/springs/spring_lattice.h"
 
@@ -23,6 +25,22 @@ inline double frame_compliance(const LatticeView& lattice) {
   return lattice.frame ? lattice.frame->compliance : 0.0;
 }
 
+// Compliance of a point whose nodes get impulses by their weights. Where nearly all of the weight is on fixed
+// nodes, the sum alone would be so small that its few free nodes would get most of a push, many times as fast
+// as the point itself.
+class WeightedCompliance {
+ public:
+  void add(double weight, double inverse_mass) {
+    sum_ += weight * weight * inverse_mass;
+    fastest_ = std::max(fastest_, std::abs(weight) * inverse_mass);
+  }
+  // Returns at least the compliance for which no node becomes more than 10 times as fast as the point.
+  double per_kg() const { return std::max(sum_, 0.1 * fastest_); }
+
+ private:
+  double sum_ = 0.0, fastest_ = 0.0;
+};
+
 // A weighted sum of nodes. Weights sum to 1; some are negative where the surface is outside its cells.
 struct EmbeddedPoint {
   static constexpr int capacity = 32;
@@ -40,8 +58,8 @@ struct EmbeddedPoint {
   Vector3 rest_m(const SpringLattice& lattice) const;
   // Position in the deformed lattice, m.
   Vector3 position_m(const SpringLattice& lattice) const;
-  // Velocity change of the point per impulse, 1/kg, relative to the lattice's frame; 0 if all of its nodes
-  // are fixed.
+  // Velocity change of the point per impulse, 1/kg, relative to the lattice's frame, see WeightedCompliance;
+  // 0 if all of its nodes are fixed.
   double compliance(const SpringLattice& lattice) const;
   // For a rigid body that contacts can move, this is an upper bound.
   double compliance(const LatticeView& lattice) const;

@@ -165,5 +165,24 @@ TEST(Bodies, OnEachOtherAllocateNothingInATick) {
   EXPECT_EQ(allocation_count(), before);
 }
 
+// Points beside fixed nodes have nearly no weight on free nodes. Where both bodies are held, a push that
+// moves such points apart moves their free nodes much farther.
+TEST(Bodies, ThatAreHeldAndOverlapStayInTheScene) {
+  for (const double offset_m : {0.0100, 0.0101, 0.0103, 0.0106}) {
+    SCOPED_TRACE(offset_m);
+    Scene scene = small_handle();
+    scene.planes = {{Vector3(0.012, 0, 0), Vector3::UnitX()}};
+    Body other = scene.bodies[0];
+    other.name = "other";
+    for (double& z : other.surface.net.z) z += offset_m;
+    scene.bodies.push_back(std::move(other));
+    Simulation simulation = simulate(scene);
+    for (int t = 0; t < 200; ++t) {
+      ASSERT_EQ(simulation.advance(far_away).flags & tick_flag_body_limited, 0U) << t;
+      ASSERT_TRUE(simulation.contact_force_n(0).allFinite() && simulation.contact_force_n(1).allFinite());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace spoonbill
