@@ -29,6 +29,11 @@ template <class T>
 class TripleBuffer {
  public:
   explicit TripleBuffer(const T& initial) : slots_{Slot{initial}, Slot{initial}, Slot{initial}} {}
+  // Calls `prepare` with each slot, for example to reserve memory that a copy of `initial` has not reserved.
+  template <class Prepare>
+  TripleBuffer(const T& initial, const Prepare& prepare) : TripleBuffer(initial) {
+    for (Slot& slot : slots_) prepare(slot.value);
+  }
   TripleBuffer(const TripleBuffer&) = delete;
   TripleBuffer& operator=(const TripleBuffer&) = delete;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,24 @@ Status run_job(LiveCommand& command, LentSession& lent) {
     return Error{ErrorCode::internal, std::string("the command failed: ") + exception.what()};
   }
   return {};
+}
+
+// Returns null if the memory does not suffice. The surfaces are then not refined.
+std::unique_ptr<Refiner> make_refiner(const Simulation& simulation) {
+  try {
+    return std::make_unique<Refiner>(simulation);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
+void run_refinement(RefinementJob& job) {
+  try {
+    if (!job.refiner->prepare(job.command)) return;
+    job.json = request_to_json(Command(job.command));
+  } catch (const std::exception&) {
+    job.refiner.reset();  // the memory does not suffice, or the command failed
+  }
 }
 
 }  // namespace
@@ -47,15 +66,37 @@ bool SessionWorker::reclaim(LentSession& lent, LiveCommand& job, bool& is_done) 
   return true;
 }
 
+void SessionWorker::prepare(RefinementJob& job) {
+  SPOONBILL_ASSERT(job.refiner != nullptr);
+  std::swap(refinement_, job);
+  finished_.store(false, std::memory_order_relaxed);
+  pending_.release();
+}
+
+bool SessionWorker::reclaim(RefinementJob& job) {
+  if (!finished_.exchange(false, std::memory_order_acquire)) return false;
+  std::swap(refinement_, job);
+  return true;
+}
+
 void SessionWorker::run() {
   while (true) {
     pending_.acquire();
     if (stopping_.load(std::memory_order_acquire)) return;
-    const Status status = run_job(job_, lent_);
-    if (!status) notices_->add(Notice::Kind::problem, status.error().message);
-    is_done_ = status.ok();
+    if (refinement_.refiner != nullptr) {
+      run_refinement(refinement_);
+    } else {
+      run_loan();
+    }
     finished_.store(true, std::memory_order_release);
   }
+}
+
+void SessionWorker::run_loan() {
+  const Status status = run_job(job_, lent_);
+  if (!status) notices_->add(Notice::Kind::problem, status.error().message);
+  is_done_ = status.ok();
+  if (is_done_) lent_.refiner = make_refiner(lent_.session->simulation);
 }
 
 namespace {
@@ -84,6 +125,7 @@ HapticSide::HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device>
   safe_device_.set_workspace_centre(session->reading.pose().position_m);
   safe_device_.set_workspace_radius(session->device.workspace_radius_m);
   lent_.session = std::move(session);
+  lent_.refiner = make_refiner(lent_.session->simulation);
   ticks_since_change_ = after_motion_ticks;
 }
 
@@ -117,6 +159,7 @@ void HapticSide::run_tick(const LoopTick& tick) {
   }
   update_force_switch();
   if (lent_.session == nullptr) return safe_device_.give_none();
+  refine();
   advance_session(reading);
   publish(tick.index);
 }
@@ -130,7 +173,8 @@ void HapticSide::close() {
 }
 
 void HapticSide::run_commands() {
-  while (lent_.session != nullptr && exchange_->commands.pop(command_)) {
+  while (lent_.session != nullptr &&
+         (std::exchange(is_command_waiting_, false) || exchange_->commands.pop(command_))) {
     if (!run_command()) return;
   }
 }
@@ -145,7 +189,8 @@ void HapticSide::update_force_switch() {
   if (recording_) push(RecordedForceSwitch{force_on_});
 }
 
-// Runs command_. Returns false if the session is then on loan to the worker.
+// Runs command_. Returns false if the session is then on loan to the worker, or if the command waits for
+// this.
 bool HapticSide::run_command() {
   if (auto* queued = std::get_if<QueuedRequest>(&command_)) {
     if (is_main_thread_request(queued->request)) {
@@ -153,12 +198,13 @@ bool HapticSide::run_command() {
     } else if (const auto* force = std::get_if<SwitchForce>(&queued->request)) {
       force_on_ = force->on;
     } else if (needs_rebuild(*lent_.session, queued->request)) {
-      lend();
+      if (!waits_for_loan()) lend();
       return false;
     } else {
       apply_now(*queued);
     }
   } else if (auto* job = std::get_if<QueuedJob>(&command_)) {
+    if (waits_for_loan()) return false;
     if (job->ends_recording) end_recording();
     lend();
     return false;
@@ -169,6 +215,12 @@ bool HapticSide::run_command() {
     end_recording();
   }
   return true;
+}
+
+// Returns whether command_, which needs the session on loan, must wait until a refinement is prepared.
+bool HapticSide::waits_for_loan() {
+  is_command_waiting_ = is_refining_;
+  return is_command_waiting_;
 }
 
 void HapticSide::lend() {
@@ -199,6 +251,37 @@ void HapticSide::reclaim_if_done() {
   }
   if (std::holds_alternative<QueuedJob>(command_)) report_job(is_done);
   safe_device_.request_proxy_reset();
+}
+
+// Has the worker prepare the refinement that the simulation wants, and adopts the one that it has prepared.
+void HapticSide::refine() {
+  if (is_refining_) return adopt_refinement();
+  if (ticks_to_refinement_ > 0) --ticks_to_refinement_;
+  const Session& session = *lent_.session;
+  const std::optional<RefineKnots>& wanted = session.simulation.wanted_refinement();
+  if (lent_.refiner == nullptr || ticks_to_refinement_ > 0 || !wanted || !session.history.has_open_step()) {
+    return;
+  }
+  refinement_.refiner = std::move(lent_.refiner);
+  refinement_.command = *wanted;
+  worker_->prepare(refinement_);
+  is_refining_ = true;
+}
+
+// Adopts the refinement once the worker has prepared it, unless an undo has made it unwanted.
+void HapticSide::adopt_refinement() {
+  constexpr int patience_ticks = 300;
+  if (!worker_->reclaim(refinement_)) return;
+  is_refining_ = false;
+  lent_.refiner = std::move(refinement_.refiner);
+  Session& session = *lent_.session;
+  const bool is_prepared = lent_.refiner != nullptr && lent_.refiner->is_prepared();
+  ticks_to_refinement_ = is_prepared ? 0 : patience_ticks;
+  const bool is_wanted = session.history.has_open_step() && session.simulation.wanted_refinement();
+  if (!is_prepared || !is_wanted) return;
+  session.history.adopt(session.simulation, *lent_.refiner);
+  record(std::move(refinement_.json));
+  count_edit();
 }
 
 void HapticSide::report_job(bool is_done) {

@@ -24,6 +24,7 @@
 #include "app/live/journal.h"
 #include "app/session/session.h"
 #include "engine/base/assert.h"
+#include "engine/simulation/refiner.h"
 #include "engine/simulation/snapshot.h"
 #include "haptic/haptic_loop.h"
 #include "haptic/lock_free.h"
@@ -36,9 +37,17 @@ namespace spoonbill {
 // A session that the haptic thread lends to the worker for a job, with the results of the job.
 struct LentSession {
   std::unique_ptr<Session> session;
+  std::unique_ptr<Refiner> refiner;            // refiner of the session; null while it prepares something
   bool is_new_session = false;                 // true if the job has replaced the session by a new one
   bool is_other_document = false;              // true if the new session shows another document
   std::unique_ptr<RecordingWriter> recording;  // recording that starts with the session's next tick
+};
+
+// A refinement of knots that the haptic thread wants, with the refiner that prepares it.
+struct RefinementJob {
+  std::unique_ptr<Refiner> refiner;
+  RefineKnots command;
+  Json json;  // the command, for the recording
 };
 
 // A job that may take long. It runs on the worker's thread. Meanwhile, the haptic thread reads the device and
@@ -84,7 +93,7 @@ struct ForceSample {
 };
 
 // Runs jobs that take milliseconds and allocate, on a thread that may wait, while the haptic thread
-// continues. Has at most one session at a time.
+// continues. Has at most one session or one refinement at a time.
 class SessionWorker {
  public:
   // The notices must outlive the worker. An error of a job becomes a notice.
@@ -97,16 +106,24 @@ class SessionWorker {
   void lend(LentSession lent, LiveCommand job);
   bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
 
+  // prepare() and reclaim() do the same for a refinement, while the session stays with the haptic thread.
+  // They swap `job` with the worker's. If this failed, which is not reported, the refiner has prepared
+  // nothing or is null.
+  void prepare(RefinementJob& job);
+  bool reclaim(RefinementJob& job);
+
  private:
   void run();
+  void run_loan();
 
   Notices* notices_;
   LentSession lent_;
   LiveCommand job_;
   bool is_done_ = false;
+  RefinementJob refinement_;
   std::atomic<bool> finished_{false};
   std::atomic<bool> stopping_{false};
-  std::counting_semaphore<2> pending_{0};  // released once per loan, and once to stop the thread
+  std::counting_semaphore<2> pending_{0};  // released once per job, and once to stop the thread
   std::thread thread_;
 };
 
@@ -117,7 +134,10 @@ struct LiveExchange {
   static constexpr std::size_t failure_capacity = 16;
 
   explicit LiveExchange(const LiveFrame& first)
-      : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
+      : commands(command_capacity),
+        frames(first, [](LiveFrame& frame) { reserve_for_refinement(frame.snapshot); }),
+        forces(force_capacity),
+        failures(failure_capacity) {}
 
   BoundedQueue<LiveCommand> commands;  // from the main thread to the haptic thread
   // Set by the main thread. The haptic thread then switches the force off at its next tick, whatever commands
@@ -160,6 +180,9 @@ class HapticSide {
   bool run_command();
   void lend();
   void reclaim_if_done();
+  bool waits_for_loan();
+  void refine();
+  void adopt_refinement();
   void report_job(bool is_done);
   void update_force_switch();
   void apply_now(QueuedRequest& queued);
@@ -183,7 +206,11 @@ class HapticSide {
   LiveExchange* exchange_;
   Journal* journal_;
   SessionWorker* worker_;
-  LiveCommand command_;  // the command in progress
+  LiveCommand command_;              // the command in progress
+  bool is_command_waiting_ = false;  // whether command_ waits until a refinement is prepared
+  RefinementJob refinement_;
+  bool is_refining_ = false;     // whether the worker has the refinement
+  int ticks_to_refinement_ = 0;  // number of ticks until a refinement may be prepared after one that failed
 
   bool last_tick_failed_ = false;
   bool recording_ = false;

@@ -54,9 +54,11 @@ constexpr std::chrono::milliseconds poll_interval{5};
 }  // namespace
 
 Journal::Journal(Notices& notices, const LiveScene& first)
-    : notices_(&notices), exporter_(notices), entries_(entry_capacity), scenes_(first), thread_([this] {
-        run();
-      }) {}
+    : notices_(&notices),
+      exporter_(notices),
+      entries_(entry_capacity),
+      scenes_(first, [](LiveScene& scene) { reserve_for_refinement(scene.scene); }),
+      thread_([this] { run(); }) {}
 
 Journal::~Journal() {
   stop();

@@ -203,22 +203,7 @@ bool LiveSession::save(std::filesystem::path file, Replaced replaced) {
 
 const LiveFrame& LiveSession::frame() {
   exchange_.frames.update_reading();
-  const LiveFrame& newest = exchange_.frames.reading();
-  refine_when_idle(newest);
-  return newest;
-}
-
-// Asks for the refinement that a surface needs, after the stroke. It is asked for again if the haptic thread
-// has not carried it out a while later.
-void LiveSession::refine_when_idle(const LiveFrame& frame) {
-  constexpr std::uint64_t patience_ticks = 300;
-  if (!frame.facts.wanted_refinement || frame.facts.in_stroke) return;
-  const std::uint64_t tick = frame.snapshot.tick;
-  const bool is_waiting = refinement_session_ == frame.session && tick < refinement_tick_ + patience_ticks;
-  if (is_waiting && refinement_tick_ > 0) return;
-  refinement_session_ = frame.session;
-  refinement_tick_ = std::max<std::uint64_t>(tick, 1);
-  ask(Command(*frame.facts.wanted_refinement));
+  return exchange_.frames.reading();
 }
 
 void LiveSession::consume_forces(std::vector<float>& forces_n) {

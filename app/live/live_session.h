@@ -88,7 +88,6 @@ class LiveSession {
   LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device, const LiveSettings& settings,
               const LiveFrame& first, const LiveScene& first_scene);
   bool send(LiveCommand command);
-  void refine_when_idle(const LiveFrame& frame);
 
   LiveSettings settings_;
   DeviceSpecification device_;
@@ -99,8 +98,6 @@ class LiveSession {
   HapticSide haptic_;
   std::optional<HapticLoop> loop_;
   std::uint64_t saves_ = 0;
-  // Tick and session at which a refinement was last asked for.
-  std::uint64_t refinement_tick_ = 0, refinement_session_ = 0;
   std::uint64_t recordings_lost_ = 0;
 };
 

@@ -5,11 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <vector>
 
 #include "engine/scene/scene.h"
+#include "engine/simulation/refiner.h"
 #include "engine/simulation/simulation.h"
 
 namespace spoonbill {
@@ -18,8 +18,8 @@ namespace spoonbill {
 bool replaces_build(const Command& command);
 
 // The states between steps. One owner: the thread that ticks. When the history is full, the oldest state is
-// dropped. after_tick() allocates nothing, and neither do undo(), redo() and cancel() unless they need a
-// build.
+// dropped. after_tick() and adopt() allocate nothing, and neither do undo(), redo() and cancel() unless they
+// need a build.
 class EditHistory {
  public:
   // Shortest release that ends a stroke, in ticks. A shorter release is a bounce and belongs to the stroke.
@@ -42,6 +42,9 @@ class EditHistory {
   // belongs to an open step, and so does another material of a body whose material this step changed. An
   // error changes nothing.
   Status apply(Simulation& simulation, const Command& command);
+  // Carries out the refinement that `refiner` has prepared. has_open_step() must be true; the refinement
+  // belongs to this step. Allocates and frees nothing.
+  void adopt(Simulation& simulation, Refiner& refiner);
 
   // undo() restores the state before the last step, redo() the state after the next step. Each does nothing
   // if there is no such step. An error of the simulation leaves the history unchanged.
@@ -67,7 +70,14 @@ class EditHistory {
     std::uint64_t build = 0;  // number of the build that the shape belongs to
   };
 
+  struct StoredBuild {
+    std::uint64_t number = 0;
+    std::shared_ptr<SimulationBuild> build;
+  };
+
   void begin_step(const State& before);
+  bool is_needed(std::uint64_t build) const;
+  void store_in_place(StoredBuild stored, std::shared_ptr<SimulationBuild>& dropped);
   Status restore(std::size_t index, Simulation& simulation);
   void drop_unused_builds();
   void drop_oldest();
@@ -82,8 +92,7 @@ class EditHistory {
   bool is_open_ = false;
   int material_body_ = -1;  // body whose material the last step has changed, or -1
 
-  // Builds by number, except the one that the simulation has.
-  std::map<std::uint64_t, std::shared_ptr<SimulationBuild>> builds_;
+  std::vector<StoredBuild> builds_;  // all that a state needs, except the one that the simulation has
   std::uint64_t live_build_ = 0, last_build_ = 0;
   std::size_t most_builds_ = build_limit;
 

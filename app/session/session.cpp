@@ -317,8 +317,6 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.sculpting = scene.sculpting;
   facts.ground = scene.ground;
   facts.symmetry = scene.symmetry;
-  facts.wanted_refinement.reset();
-  if (session.history.has_open_step()) facts.wanted_refinement = session.simulation.wanted_refinement();
   facts.can_undo = session.history.can_undo();
   facts.can_redo = session.history.can_redo();
   facts.in_stroke = session.history.in_stroke();

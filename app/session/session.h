@@ -138,7 +138,6 @@ struct SessionFacts {
   Sculpting sculpting;
   Symmetry symmetry;
   std::optional<Ground> ground = {};
-  std::optional<RefineKnots> wanted_refinement = {};  // see Simulation::wanted_refinement()
   bool can_undo = false;
   bool can_redo = false;
   bool in_stroke = false;

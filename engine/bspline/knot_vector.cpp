@@ -199,6 +199,12 @@ double KnotVector::into_domain(double u) const {
   return wrapped >= start && wrapped < end ? wrapped : start;
 }
 
+void KnotVector::reserve(int control_points) {
+  const auto most = static_cast<std::size_t>(control_points + 2 * max_degree + 1);
+  knots_.reserve(most);
+  extended_.reserve(most);
+}
+
 int KnotVector::find_span(double u) const {
   SPOONBILL_ASSERT_DEBUG(u >= domain_start() && u <= domain_end());
   const auto first = extended_.begin() + degree_, last = extended_.end() - 1 - degree_;

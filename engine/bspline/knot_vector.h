@@ -82,6 +82,10 @@ class KnotVector {
   // Returns the index of the control point that belongs to basis function j (0..degree) of a span.
   int control_index(int span, int j) const;
 
+  // Reserves memory, so that a knot vector of up to so many control points can be assigned without
+  // allocation.
+  void reserve(int control_points);
+
   friend bool operator==(const KnotVector&, const KnotVector&) = default;
 
  private:

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
-#include "engine/material/lattice/box_lattice.h"
+#include "engine/material/lattice/embed_point.h"
 #include "engine/simulation/contact_samples.h"
 
 namespace spoonbill {
@@ -146,111 +145,6 @@ bool is_pole(const Surface& surface, bool at_end) {
   return farthest <= tolerance * extent;
 }
 
-void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, CellLocation& best,
-                         std::array<int, 3>& cell) {
-  const auto [ni, nj, nk] = mesh.grid_index(node);
-  for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
-    for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
-      for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {
-        const CellLocation location = locate_in_cell(mesh.cell(i, j, k), point);
-        if (location.outside < best.outside - 1e-9) {
-          best = location;
-          cell = {i, j, k};
-        }
-      }
-    }
-  }
-}
-
-// A cell, and weights of its corners.
-struct WeighedCell {
-  std::array<int, 3> cell{};
-  std::array<double, 8> weights{};
-  double size = std::numeric_limits<double>::infinity();  // sum of the magnitudes of the weights
-};
-
-// Weighs the corners of a cell that does not contain the point, so that the point follows the linear map that
-// is nearest to the motion of the corners, and therefore every rigid motion. `size` stays infinite if the
-// corners lie in a plane.
-WeighedCell weigh_by_mean_motion(const LatticeMesh& mesh, const std::array<int, 3>& cell,
-                                 const Vector3& point) {
-  constexpr double plane_fraction = 1e-6;  // smallest relative extent, squared, of corners that span space
-  const CellCorners corners = mesh.cell(cell[0], cell[1], cell[2]);
-  WeighedCell weighed{cell};
-  Vector3 centre = Vector3::Zero();
-  for (const Vector3& corner : corners) centre += corner / 8.0;
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Vector3& corner : corners) moments += (corner - centre) * (corner - centre).transpose();
-  const double trace = moments.trace();
-  if (!(moments.determinant() > plane_fraction * trace * trace * trace)) return weighed;
-  const Vector3 pull = moments.inverse() * (point - centre);
-  weighed.size = 0.0;
-  for (std::size_t c = 0; c < 8; ++c) {
-    weighed.weights[c] = 0.125 + pull.dot(corners[c] - centre);
-    weighed.size += std::abs(weighed.weights[c]);
-  }
-  return weighed;
-}
-
-// Finds the cell with this corner that needs the smallest weights.
-void weigh_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, WeighedCell& best) {
-  const auto [ni, nj, nk] = mesh.grid_index(node);
-  for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
-    for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
-      for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {
-        const WeighedCell weighed = weigh_by_mean_motion(mesh, {i, j, k}, point);
-        if (weighed.size < (1.0 - 1e-9) * best.size) best = weighed;
-      }
-    }
-  }
-}
-
-// Largest sum of the magnitudes of a point's weights. Larger weights would amplify the motions of nodes.
-constexpr double largest_weights = 16.0;
-
-// Embeds a point in a cell. Considers the cells around the nearest node and around that node's twin across a
-// seam, and chooses the one that contains the point or, if none does, the one nearest to it. If the chosen
-// cell is more than one cell size away, the point follows the mean motion of one of these cells, or the
-// nearest node alone if that would take too large weights.
-EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
-  int nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < mesh.node_count(); ++n) {
-    const double distance = (mesh.nodes[n] - point).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      nearest = n;
-    }
-  }
-  const int twin = mesh.twin(nearest);
-  CellLocation best;
-  best.outside = std::numeric_limits<double>::infinity();
-  std::array<int, 3> cell{};
-  search_cells_around(mesh, nearest, point, best, cell);
-  if (twin != nearest) search_cells_around(mesh, twin, point, best, cell);
-  EmbeddedPoint embedded;
-  if (!(best.outside < 1.0)) {
-    WeighedCell weighed;
-    weigh_cells_around(mesh, nearest, point, weighed);
-    if (twin != nearest) weigh_cells_around(mesh, twin, point, weighed);
-    if (!(weighed.size <= largest_weights)) {
-      embedded.count = 1;
-      embedded.node[0] = nearest;
-      embedded.weight[0] = 1.0f;
-      return embedded;
-    }
-    cell = weighed.cell;
-    best.weights = weighed.weights;
-  }
-  embedded.count = 8;
-  for (int c = 0; c < 8; ++c) {
-    embedded.node[c] =
-        mesh.joined(mesh.index(cell[0] + (c >> 2 & 1), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)));
-    embedded.weight[c] = static_cast<float>(best.weights[c]);
-  }
-  return embedded;
-}
-
 struct SampledRefit {
   NestedGrid nested;
   DisplacementRefit refit;
@@ -361,7 +255,7 @@ void BodyMapping::embed(const SpringLattice& lattice) {
         embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);
         continue;
       }
-      embedding_.push_back(embed_point(
+      embedding_.push_back(embed_in_mesh(
           lattice.mesh(), evaluate(rest_, grid.u.parameters[i], grid.v.parameters[j]).position_m));
     }
   }
@@ -538,7 +432,8 @@ void BodyMapping::adopt(const BodyMapping& coarser, const SpringLattice& lattice
   const BlendingMatrix &u = *coarser_u_, &v = *coarser_v_;
   const std::array<std::vector<float>*, 3> followed{&followed_.x, &followed_.y, &followed_.z};
   const auto columns = static_cast<std::size_t>(u.rows > 0 ? coarser.rest_.net.columns : 0);
-  SPOONBILL_ASSERT(half_.size() == columns && v.columns == static_cast<int>(columns));
+  SPOONBILL_ASSERT(half_.size() == columns && v.columns == static_cast<int>(columns) &&
+                   u.columns == coarser.rest_.net.rows);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<float>& control = coarser.control_[axis];
     for (int i = 0; i < u.rows; ++i) {
@@ -596,99 +491,6 @@ EmbeddedPoint BodyMapping::at(double u, double v) const {
   point.add(embedding_[first + 1], static_cast<float>((1 - a) * b));
   point.add(embedding_[first + grid.columns()], static_cast<float>(a * (1 - b)));
   point.add(embedding_[first + grid.columns() + 1], static_cast<float>(a * b));
-  return point;
-}
-
-namespace {
-
-// Returns a number for the octant of a cell that contains the point. The number consists of the cell's first
-// node and one bit for each direction.
-int find_cell_octant(const EmbeddedPoint& point) {
-  int octant = 0;
-  for (int bit = 0; bit < 3; ++bit) {
-    float upper_weight = 0.0f;
-    for (int c = 0; c < 8; ++c) {
-      if ((c >> bit & 1) != 0) upper_weight += point.weight[c];
-    }
-    octant |= upper_weight > 0.5f ? 1 << bit : 0;
-  }
-  return 8 * point.node[0] + octant;
-}
-
-}  // namespace
-
-MeshMapping::MeshMapping(const TriangleMesh& rest, const std::vector<TriangleCorners>& drawn,
-                         const SpringLattice& lattice)
-    : rest_m_(rest.vertices_m),
-      triangles_(std::make_shared<const std::vector<TriangleCorners>>(drawn)),
-      node_moves_(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f),
-      current_(rest) {
-  SPOONBILL_ASSERT(!rest.triangles.empty());
-  embed(lattice);
-  const LatticeMesh& mesh = lattice.mesh();
-  patches_.resize(rest_m_.size());
-  if (mesh.is_frame) {
-    std::iota(patches_.begin(), patches_.end(), 0);
-    return;
-  }
-  std::transform(rest_m_.begin(), rest_m_.end(), patches_.begin(),
-                 [&](const Vector3& vertex) { return find_cell_octant(embed_in_box(mesh, vertex)); });
-  std::vector<int> found = patches_;
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  for (int& patch : patches_) {
-    patch = static_cast<int>(std::lower_bound(found.begin(), found.end(), patch) - found.begin());
-  }
-}
-
-void MeshMapping::embed(const SpringLattice& lattice) {
-  const LatticeMesh& mesh = lattice.mesh();
-  embedding_.clear();
-  embedding_.reserve(rest_m_.size());
-  for (const Vector3& vertex : rest_m_) {
-    const EmbeddedPoint point = mesh.is_frame ? embed_point(mesh, vertex) : embed_in_box(mesh, vertex);
-    CellWeights& weights = embedding_.emplace_back();
-    std::copy_n(point.node.begin(), 8, weights.node);
-    std::copy_n(point.weight.begin(), 8, weights.weight);
-  }
-}
-
-MeshMapping MeshMapping::rebased(const SpringLattice& lattice) const {
-  MeshMapping mapping = *this;
-  mapping.rest_m_ = current_.vertices_m();
-  mapping.embed(lattice);
-  return mapping;
-}
-
-void MeshMapping::update(const SpringLattice& lattice) {
-  using Vector4 = float __attribute__((vector_size(16)));
-  const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
-  const float *x = lattice.displacements(0), *y = lattice.displacements(1), *z = lattice.displacements(2);
-  auto* const moves = reinterpret_cast<Vector4*>(node_moves_.data());
-  for (std::size_t n = 0; n < nodes; ++n) moves[n] = Vector4{x[n], y[n], z[n], 0.0f};
-  std::vector<Vector3>& vertices = current_.mutable_vertices_m();
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const CellWeights& cell = embedding_[v];
-    const auto term = [&](int c) { return cell.weight[c] * moves[cell.node[c]]; };
-    const Vector4 sum =
-        ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
-    vertices[v] = rest_m_[v] + Vector3(sum[0], sum[1], sum[2]);
-  }
-  current_.refit();
-}
-
-EmbeddedPoint MeshMapping::vertex(std::uint32_t vertex) const {
-  const CellWeights& cell = embedding_[vertex];
-  EmbeddedPoint point;
-  point.count = 8;
-  std::copy_n(cell.node, 8, point.node.begin());
-  std::copy_n(cell.weight, 8, point.weight.begin());
-  return point;
-}
-
-EmbeddedPoint MeshMapping::at(const PointOnMesh& on) const {
-  EmbeddedPoint point;
-  for (std::size_t c = 0; c < 3; ++c) point.add(vertex(on.vertex[c]), static_cast<float>(on.weight[c]));
   return point;
 }
 

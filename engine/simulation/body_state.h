@@ -22,10 +22,14 @@
 #include "engine/simulation/body_hold.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/mesh_mapping.h"
 #include "engine/simulation/rigid_body.h"
 #include "engine/simulation/smoothing.h"
 
 namespace spoonbill {
+
+// Mapping to the skin of a body.
+using SkinMapping = std::variant<BodyMapping, MeshMapping>;
 
 // State of one body. Plain data with one owner, the simulation.
 struct BodyState {

@@ -1,28 +1,33 @@
-#include <string>
 #include <utility>
 
+#include "engine/simulation/refinement.h"
 #include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
-std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies) {
-  std::vector<BodyPairContact> pairs;
-  for (std::size_t second = 1; second < bodies.size(); ++second) {
-    for (std::size_t first = 0; first < second; ++first) {
-      pairs.emplace_back(bodies[first], bodies[second]);
-    }
-  }
-  return pairs;
+
+std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector<FixingPlane>& planes) {
+  return body.rigid ? std::vector<FixingPlane>() : planes;
 }
 
-std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies) {
-  std::vector<BodySelfContact> self;
-  self.reserve(bodies.size());
-  for (const BodyState& body : bodies) self.emplace_back(body);
-  return self;
+ContactScene find_contact_scene(const Scene& scene) {
+  return {scene.bodies.size(), scene.ground.has_value()};
 }
 
-std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies) {
-  return {bodies.begin(), bodies.end()};
+void exchange_contacts(Simulation::State& state, SceneContacts& contacts) {
+  std::swap(state.tool.contact, contacts.tool);
+  std::swap(state.mirrored.contact, contacts.mirrored);
+  std::swap(state.between, contacts.between);
+  state.pairs.swap(contacts.pairs);
+  state.self.swap(contacts.self);
+  std::swap(state.searched, contacts.searched);
+  std::swap(state.ground_contact, contacts.ground);
+  state.rigid_ground.swap(contacts.rigid_ground);
+  state.sampled_ground.swap(contacts.sampled_ground);
+}
+
+void make_contacts(Simulation::State& state) {
+  SceneContacts made = make_scene_contacts(state.bodies, find_contact_scene(state.scene), state.model);
+  exchange_contacts(state, made);
 }
 
 void carry_motion(const BodyState& state, Body& body) {
@@ -31,35 +36,7 @@ void carry_motion(const BodyState& state, Body& body) {
   body.motion->point_m = pose.position_m + pose.orientation * body.motion->point_m;
 }
 
-std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies) {
-  return {bodies.begin(), bodies.end()};
-}
-
-BodyContacts make_contact_buffer() {
-  // Largest number of constraints. Two handles pressed against each other need some hundreds.
-  constexpr int capacity = 8192;
-  return BodyContacts(capacity);
-}
-
-void make_contacts(Simulation::State& state) {
-  state.tool.contact = ToolContact(state.scene_bodies(), state.model);
-  state.mirrored.contact = ToolContact(state.scene_bodies(), state.model);
-  state.pairs = make_pairs(state.bodies);
-  state.self = make_self_contacts(state.bodies);
-  state.between = make_contact_buffer();
-  state.searched = SearchedShapes(state.bodies);
-  state.ground_contact =
-      BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
-  state.rigid_ground = make_rigid_ground_contacts(state.scene_bodies());
-  state.sampled_ground = make_sampled_ground_contacts(state.scene_bodies());
-}
-
 namespace {
-
-// Returns the planes that fix nodes of the body: none if the body is rigid.
-std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector<FixingPlane>& planes) {
-  return body.rigid ? std::vector<FixingPlane>() : planes;
-}
 
 // Returns the mapping of a body whose rest shape is the present one, with a lattice at rest there.
 Result<SkinMapping> make_present_skin(const BodyState& body, const SpringLattice& lattice,
@@ -215,62 +192,14 @@ Status CommandApplier::operator()(const KeepShape&) {
   return {};
 }
 
-namespace {
-
-// Returns a parameter in each element that overlaps the range; none without a range.
-std::vector<double> elements_in(const KnotVector& knots, const std::optional<Range<double>>& range) {
-  std::vector<double> found;
-  if (!range) return found;
-  const std::vector<double> breaks = knots.breakpoints();
-  for (std::size_t e = 0; e + 1 < breaks.size(); ++e) {
-    const bool overlaps = breaks[e] <= range->high && breaks[e + 1] >= range->low;
-    if (overlaps) found.push_back(0.5 * (breaks[e] + breaks[e + 1]));
-  }
-  return found;
-}
-
-}  // namespace
-
-Result<BodyMapping> CommandApplier::make_refined(const RefineKnots& command) const {
-  const BodyState& body = state.bodies[static_cast<std::size_t>(command.body)];
-  const BodyMapping& mapping = body.mapping();
-  std::vector<double> u = elements_in(mapping.rest().u, command.u);
-  std::vector<double> v = elements_in(mapping.rest().v, command.v);
-  if (!command.u && !command.v) {
-    u = {mapping.residual().u};
-    v = {mapping.residual().v};
-  }
-  for (const auto& [knots, added] : {std::pair{&mapping.rest().u, &u}, std::pair{&mapping.rest().v, &v}}) {
-    if (Status status = check_range("refine_knots: control points in one direction",
-                                    knots->control_point_count() + static_cast<int>(added->size()),
-                                    control_point_count_range);
-        !status.ok()) {
-      return status.error();
-    }
-  }
-  return mapping.refined(u, v, body.lattice, planes_through(body, state.scene.planes));
-}
-
 Status CommandApplier::operator()(const RefineKnots& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t index = static_cast<std::size_t>(command.body);
-  if (state.bodies[index].mesh()) {
-    return Error{ErrorCode::unsupported, "refine_knots: the body has a mesh, not a surface", "body"};
-  }
-  BodyMapping& mapping = state.bodies[index].mapping();
-  mapping.measure_residual();
-  if (!command.u && !command.v && !(mapping.residual().largest_m > 0.0)) {
-    return Error{ErrorCode::inconsistent,
-                 "refine_knots: nothing moved since the knots were last changed; shape the body first"};
-  }
-  Result<BodyMapping> finer = make_refined(command);
-  if (!finer.ok()) return finer.error();
-  finer->adopt(mapping, state.bodies[index].lattice);
-  const std::vector<int> new_sample = finer->find_samples_of(mapping);
-  mapping = std::move(finer).value();
-  state.scene.bodies[index].surface = mapping.current();
-  state.wanted_refinement.reset();
-  refit_contacts(command.body, new_sample);
+  if (!state.bodies[index].mesh()) state.bodies[index].mapping().measure_residual();
+  Result<PreparedRefinement> prepared = prepare_refinement(
+      command, state.bodies, {find_contact_scene(state.scene), state.scene.planes, state.model});
+  if (!prepared.ok()) return prepared.error();
+  adopt_refinement(state, prepared.value());
   return {};
 }
 
@@ -364,14 +293,6 @@ void CommandApplier::adopt_model(ToolModel model) {
   if (state.model.triangles) state.retired_triangles.push_back(std::move(state.model.triangles));
   state.model = std::move(model);
   make_contacts(state);
-}
-
-// Makes the contacts after a body's surface was refined. The tool keeps its grip and its pushes.
-void CommandApplier::refit_contacts(int body, std::span<const int> new_sample) {
-  const ToolContact tool = std::move(state.tool.contact), mirrored = std::move(state.mirrored.contact);
-  make_contacts(state);
-  state.tool.contact.carry_over(tool, body, new_sample);
-  state.mirrored.contact.carry_over(mirrored, body, new_sample);
 }
 
 }  // namespace spoonbill

@@ -9,6 +9,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/processor.h"
 #include "engine/simulation/contact_area.h"
+#include "engine/simulation/simulation_build.h"
 #include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
@@ -60,37 +61,30 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   }
   Result<ToolModel> model = make_tool_model(scene.tool, set);
   if (!model.ok()) return model.error();
-  HeldTool tool{ToolContact(bodies, model.value())};
-  HeldTool mirrored{ToolContact(bodies, model.value())};
   if (model->soft) bodies.push_back(*std::move(model->soft));
-  std::vector<BodyPairContact> pairs = make_pairs(bodies);
-  std::vector<BodySelfContact> self = make_self_contacts(bodies);
-  BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
-  std::vector<RigidGroundContact> rigid_ground =
-      make_rigid_ground_contacts({bodies.data(), scene.bodies.size()});
-  std::vector<SampledGroundContact> sampled_ground =
-      make_sampled_ground_contacts({bodies.data(), scene.bodies.size()});
+  model->soft.reset();
+  SceneContacts contacts = make_scene_contacts(bodies, find_contact_scene(scene), model.value());
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
   const Box scene_box = find_scene_box(bodies, scene.bodies.size());
   auto made = std::make_unique<State>(State{std::move(scene),
                                             set,
                                             std::move(bodies),
                                             std::move(model).value(),
-                                            std::move(tool),
-                                            std::move(mirrored),
-                                            make_contact_buffer(),
-                                            std::move(pairs),
-                                            std::move(self),
-                                            std::move(ground_contact),
-                                            std::move(rigid_ground),
-                                            std::move(sampled_ground),
+                                            HeldTool{std::move(contacts.tool)},
+                                            HeldTool{std::move(contacts.mirrored)},
+                                            std::move(contacts.between),
+                                            std::move(contacts.pairs),
+                                            std::move(contacts.self),
+                                            std::move(contacts.ground),
+                                            std::move(contacts.rigid_ground),
+                                            std::move(contacts.sampled_ground),
                                             false,
                                             0.0,
                                             scene_box,
                                             -1,
                                             std::move(retired_bodies),
                                             {}});
-  made->searched = SearchedShapes(made->bodies);
+  made->searched = std::move(contacts.searched);
   update_inertia(*made);
   return Simulation(std::move(made));
 }
@@ -138,6 +132,7 @@ const Scene& Simulation::scene() const {
 }
 void Simulation::write_scene(Scene& scene) const {
   scene = state_->scene;
+  reserve_for_refinement(scene);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (state_->bodies[b].mesh()) {
       scene.bodies[b].mesh_pose = composed(state_->bodies[b].rigid->pose(), scene.bodies[b].mesh_pose);
@@ -329,26 +324,39 @@ void Simulation::write_shape(ShapeState& shape) const {
   }
 }
 
-struct SimulationBuild {
-  std::vector<BodyState> states;
-  std::vector<Body> bodies;
-  std::vector<FixingPlane> planes;
-};
+std::shared_ptr<SimulationBuild> copy_mappings(std::span<const BodyState> bodies) {
+  auto build = std::make_shared<SimulationBuild>();
+  for (const BodyState& body : bodies) {
+    build->mappings.push_back(body.mesh() ? std::nullopt : std::optional(body.mapping()));
+  }
+  return build;
+}
 
-std::shared_ptr<SimulationBuild> Simulation::copy_build() const {
-  const auto count = static_cast<std::ptrdiff_t>(state_->scene.bodies.size());
-  return std::make_shared<SimulationBuild>(SimulationBuild{
-      {state_->bodies.begin(), state_->bodies.begin() + count}, state_->scene.bodies, state_->scene.planes});
+std::shared_ptr<SimulationBuild> Simulation::copy_build(BuildPart part) const {
+  const std::span<BodyState> bodies = state_->scene_bodies();
+  if (part == BuildPart::mappings) return copy_mappings(bodies);
+  return std::make_shared<SimulationBuild>(
+      SimulationBuild{{bodies.begin(), bodies.end()}, state_->scene.bodies, state_->scene.planes});
 }
 
 std::shared_ptr<SimulationBuild> Simulation::exchange_build(std::shared_ptr<SimulationBuild> build) {
-  SPOONBILL_ASSERT(build != nullptr && build->states.size() == state_->scene.bodies.size());
+  const std::span<BodyState> bodies = state_->scene_bodies();
+  SPOONBILL_ASSERT(build != nullptr && (build->mappings.empty() ? build->states.size()
+                                                                : build->mappings.size()) == bodies.size());
   const DenormalsFlushed flushed;
-  std::swap_ranges(build->states.begin(), build->states.end(), state_->bodies.begin());
-  std::swap(build->bodies, state_->scene.bodies);
-  std::swap(build->planes, state_->scene.planes);
+  if (build->mappings.empty()) {
+    std::swap_ranges(build->states.begin(), build->states.end(), bodies.begin());
+    std::swap(build->bodies, state_->scene.bodies);
+    std::swap(build->planes, state_->scene.planes);
+    update_inertia(*state_);
+  }
+  for (std::size_t b = 0; b < build->mappings.size(); ++b) {
+    if (!build->mappings[b]) continue;
+    std::swap(*build->mappings[b], bodies[b].mapping());
+    bodies[b].is_refined_enough = false;
+    state_->scene.bodies[b].surface = bodies[b].mapping().current();
+  }
   state_->wanted_refinement.reset();
-  update_inertia(*state_);
   const ToolContact tool = std::move(state_->tool.contact), mirrored = std::move(state_->mirrored.contact);
   make_contacts(*state_);
   state_->tool.contact.keep_suspension(tool);

@@ -99,6 +99,10 @@ class StateHash {
 // Everything that a stroke does not change and that commands replace: the bodies with their mappings,
 // lattices and solvers, materials, fixed nodes and fixing planes.
 struct SimulationBuild;
+// The parts of a build: everything, or only the mappings to surfaces, if only knots will change.
+enum class BuildPart { whole, mappings };
+
+class Refiner;
 
 class Simulation {
  public:
@@ -142,10 +146,14 @@ class Simulation {
   const std::optional<RefineKnots>& wanted_refinement() const;
 
   // copy_build() returns a copy of the present build. exchange_build() takes a build of this simulation and
-  // returns the one that it replaces; restore() must follow. Both allocate. Neither `build` nor the results
-  // are null.
-  std::shared_ptr<SimulationBuild> copy_build() const;
+  // returns the one that it replaces; restore() must follow. A build of mappings may be exchanged only with
+  // one that differs in knots alone. Both allocate. Neither `build` nor the results are null.
+  std::shared_ptr<SimulationBuild> copy_build(BuildPart part = BuildPart::whole) const;
   std::shared_ptr<SimulationBuild> exchange_build(std::shared_ptr<SimulationBuild> build);
+
+  // Carries out the refinement that `refiner` has prepared, as apply() would, between two ticks. Returns the
+  // refiner's build of the mappings from before, which the caller may take. Allocates nothing.
+  std::shared_ptr<SimulationBuild>& adopt(Refiner& refiner);
 
   // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).
   std::vector<std::string> warnings() const;
@@ -204,8 +212,14 @@ class Simulation {
 
  private:
   friend struct CommandApplier;
+  friend class Refiner;
   explicit Simulation(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+// Each reserves memory, so that write_snapshot() or Simulation::write_scene() does not allocate after a
+// refinement within the limit.
+void reserve_for_refinement(Snapshot& snapshot);
+void reserve_for_refinement(Scene& scene);
 
 }  // namespace spoonbill

@@ -10,15 +10,10 @@
 
 #include "engine/base/result.h"
 #include "engine/material/lattice_solver.h"
-#include "engine/simulation/body_contact.h"
 #include "engine/simulation/body_state.h"
-#include "engine/simulation/ground_contact.h"
-#include "engine/simulation/rigid_ground_contact.h"
-#include "engine/simulation/sampled_ground_contact.h"
-#include "engine/simulation/searched_shapes.h"
+#include "engine/simulation/scene_contacts.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
-#include "engine/simulation/tool_contact.h"
 
 namespace spoonbill {
 
@@ -55,10 +50,10 @@ struct Simulation::State {
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
-  std::vector<BodyPairContact> pairs;            // all pairs: (0, 1), (0, 2), (1, 2), ...; see make_pairs()
-  std::vector<BodySelfContact> self;             // self-contact of each body
-  BodyGroundContact ground_contact;              // contacts of the scene's bodies; empty without a ground
-  std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
+  std::vector<BodyPairContact> pairs;                // all pairs: (0, 1), (0, 2), (1, 2), ...
+  std::vector<BodySelfContact> self;                 // self-contact of each body
+  BodyGroundContact ground_contact;                  // contacts of the scene's bodies; empty without a ground
+  std::vector<RigidGroundContact> rigid_ground;      // contacts of each of the scene's bodies
   std::vector<SampledGroundContact> sampled_ground;  // of each of them, for soft bodies in boxes of cells
   bool pairs_overflow = false;                       // whether the last search exceeded a capacity
   double tool_gap_m = 0.0;  // smallest gap between a soft tool and a body; infinite if none is near
@@ -91,14 +86,13 @@ struct Simulation::State {
   }
 };
 
-std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
-std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
-std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies);
-std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies);
-// Makes the memory for the constraints between all bodies.
-BodyContacts make_contact_buffer();
+ContactScene find_contact_scene(const Scene& scene);
+// Exchanges the contacts. Allocates nothing.
+void exchange_contacts(Simulation::State& state, SceneContacts& contacts);
 // Makes all contacts again, without forces.
 void make_contacts(Simulation::State& state);
+// Returns the planes that fix nodes of the body: none if the body is rigid.
+std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector<FixingPlane>& planes);
 // Moves the point of a body's motion with the body, or with the hand that holds it, to where it is now.
 void carry_motion(const BodyState& state, Body& body);
 
@@ -179,8 +173,6 @@ struct CommandApplier {
   // again, because that takes as long as modelling it.
   Status check_changes(const Tool& tool) const;
   void adopt_model(ToolModel model);
-  void refit_contacts(int body, std::span<const int> new_sample);
-  Result<BodyMapping> make_refined(const RefineKnots& command) const;
   Status set_planes(std::vector<FixingPlane> planes);
   void set_skins(std::vector<SkinMapping> skins);
 };

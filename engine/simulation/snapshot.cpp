@@ -25,9 +25,21 @@ std::uint64_t fingerprint_structure(const Surface& surface) {
   return hash.value();
 }
 
+template <class Real>
+void reserve(KnotVector& u, KnotVector& v, std::vector<Real>& x, std::vector<Real>& y, std::vector<Real>& z) {
+  for (KnotVector* const knots : {&u, &v}) knots->reserve(control_point_count_range.high);
+  for (std::vector<Real>* const axis : {&x, &y, &z}) {
+    axis->reserve(static_cast<std::size_t>(refined_control_point_limit));
+  }
+}
+
 void write_surface(const Surface& surface, SurfaceSnapshot& out) {
   const std::uint64_t structure = fingerprint_structure(surface);
-  if (out.structure != structure) out = {surface.u, surface.v, structure, {}, {}, {}, {}};
+  if (out.structure != structure) {
+    out.u = surface.u;
+    out.v = surface.v;
+    out.structure = structure;
+  }
   const auto copy = [](const std::vector<double>& from, std::vector<float>& to) {
     to.assign(from.begin(), from.end());
   };
@@ -105,7 +117,9 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
       write_mesh(*mesh, out[b].mesh);
     } else {
       const BodyMapping& mapping = bodies[b].mapping();
-      write_surface(mapping.current(), out[b].surface);
+      SurfaceSnapshot& surface = out[b].surface;
+      reserve(surface.u, surface.v, surface.x, surface.y, surface.z);
+      write_surface(mapping.current(), surface);
       out[b].surface.trim = bodies[b].trim;
       out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m,
                          bodies[b].is_refined_enough};
@@ -176,6 +190,20 @@ MeshSnapshot make_mesh_snapshot(const TriangleMesh& mesh) {
   snapshot.triangles = std::make_shared<const std::vector<TriangleCorners>>(mesh.triangles);
   write_vertices(mesh.vertices_m, snapshot);
   return snapshot;
+}
+
+void reserve_for_refinement(Snapshot& snapshot) {
+  for (BodySnapshot& body : snapshot.bodies) {
+    SurfaceSnapshot& surface = body.surface;
+    if (!body.is_mesh()) reserve(surface.u, surface.v, surface.x, surface.y, surface.z);
+  }
+}
+
+void reserve_for_refinement(Scene& scene) {
+  for (Body& body : scene.bodies) {
+    Surface& surface = body.surface;
+    if (!body.mesh) reserve(surface.u, surface.v, surface.net.x, surface.net.y, surface.net.z);
+  }
 }
 
 Result<Snapshot> make_scene_snapshot(const Scene& scene) {

@@ -4,6 +4,7 @@
 
 #include "app/session/session.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/refiner.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/allocations.h"
@@ -284,6 +285,89 @@ TEST(EditHistory, FollowsTheTicksWithoutAllocating) {
     touched.hold(0.03, EditHistory::release_ticks + 1);
   }
   EXPECT_EQ(allocation_count(), before);
+}
+
+// Strokes during which a refiner refines the surface.
+struct RefinedStrokes {
+  Touched touched;
+  Refiner refiner{touched.simulation};
+
+  int columns() const { return touched.simulation.surface().net.columns; }
+  // Presses, refines one element of v while the tool touches, and moves away.
+  void stroke(double v_m) {
+    touched.press();
+    ASSERT_TRUE(touched.history.in_stroke());
+    ASSERT_TRUE(refiner.prepare(RefineKnots{0, std::nullopt, Range<double>{v_m, v_m}}));
+    const std::size_t before = allocation_count();
+    touched.history.adopt(touched.simulation, refiner);
+    EXPECT_EQ(allocation_count(), before);
+    touched.hold(0.03, EditHistory::release_ticks + catch_up_ticks);
+  }
+};
+
+TEST(EditHistory, TakesBackTheRefinementsOfAStrokeWithIt) {
+  RefinedStrokes strokes;
+  Simulation& simulation = strokes.touched.simulation;
+  EditHistory& history = strokes.touched.history;
+  const std::uint64_t start = shape_hash(simulation);
+  std::vector<int> columns = {strokes.columns()};
+  for (const double v_m : {0.0311, 0.0312, 0.0421}) {
+    strokes.stroke(v_m);
+    columns.push_back(strokes.columns());
+    EXPECT_GT(columns.back(), columns[columns.size() - 2]);
+  }
+  const std::uint64_t end = shape_hash(simulation);
+  for (std::size_t s = columns.size() - 1; s > 0; --s) {
+    EXPECT_TRUE(history.undo_needs_build());
+    ASSERT_TRUE(history.undo(simulation));
+    EXPECT_EQ(strokes.columns(), columns[s - 1]);
+  }
+  EXPECT_FALSE(history.can_undo());
+  EXPECT_EQ(shape_hash(simulation), start);
+  while (history.can_redo()) ASSERT_TRUE(history.redo(simulation));
+  EXPECT_EQ(strokes.columns(), columns.back());
+  EXPECT_EQ(shape_hash(simulation), end);
+}
+
+// A new material and then a stroke with a refinement: each undo restores what its step has changed.
+TEST(EditHistory, KeepsWholeBuildsAndMappingsApart) {
+  RefinedStrokes strokes;
+  Simulation& simulation = strokes.touched.simulation;
+  EditHistory& history = strokes.touched.history;
+  const double first_pa = simulation.scene().bodies[0].material.youngs_modulus_pa;
+  const int first_columns = strokes.columns();
+  Material stiffer = simulation.scene().bodies[0].material;
+  stiffer.youngs_modulus_pa *= 2.0;
+  ASSERT_TRUE(history.apply(simulation, SetMaterial{stiffer}));
+  strokes.refiner = Refiner(simulation);
+  strokes.stroke(0.0311);
+  const std::uint64_t end = shape_hash(simulation);
+  ASSERT_TRUE(history.undo(simulation));
+  EXPECT_EQ(strokes.columns(), first_columns);
+  EXPECT_EQ(simulation.lattice().material().youngs_modulus_pa, 2.0 * first_pa);
+  ASSERT_TRUE(history.undo(simulation));
+  EXPECT_EQ(simulation.lattice().material().youngs_modulus_pa, first_pa);
+  EXPECT_FALSE(history.can_undo());
+  while (history.can_redo()) ASSERT_TRUE(history.redo(simulation));
+  EXPECT_EQ(shape_hash(simulation), end);
+}
+
+// With more refinements than builds are kept, the oldest steps go.
+TEST(EditHistory, KeepsTheNewestRefinementsWhenItIsFull) {
+  RefinedStrokes strokes;
+  Simulation& simulation = strokes.touched.simulation;
+  EditHistory& history = strokes.touched.history;
+  const int first_columns = strokes.columns();
+  constexpr int stroke_count = static_cast<int>(EditHistory::build_limit) + 6;
+  for (int s = 0; s < stroke_count; ++s) strokes.stroke(0.0211 + 0.0011 * s);
+  const std::uint64_t end = shape_hash(simulation);
+  int undone = 0;
+  for (; history.can_undo(); ++undone) ASSERT_TRUE(history.undo(simulation));
+  EXPECT_LE(undone, static_cast<int>(EditHistory::build_limit));
+  EXPECT_GE(undone, static_cast<int>(EditHistory::build_limit) - 1);
+  EXPECT_GT(strokes.columns(), first_columns);
+  while (history.can_redo()) ASSERT_TRUE(history.redo(simulation));
+  EXPECT_EQ(shape_hash(simulation), end);
 }
 
 }  // namespace

@@ -46,9 +46,9 @@ class FailingSensor : public Device {
 // The haptic thread's part of a live session, called on the test's thread, whose allocations are counted.
 class Side {
  public:
-  explicit Side(bool sensor_fails = false) {
-    auto session = Session::make(held_handle(), "test", VirtualDevice::default_specification(),
-                                 InstructionSet::baseline);
+  explicit Side(bool sensor_fails = false, const Document& document = held_handle()) {
+    auto session =
+        Session::make(document, "test", VirtualDevice::default_specification(), InstructionSet::baseline);
     EXPECT_TRUE(session);
     auto made = std::make_unique<Session>(std::move(session).value());
     LiveFrame first;
@@ -145,6 +145,50 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   side.ask(RedoStroke{});
   EXPECT_EQ(side.tick(100), 0U);
   EXPECT_EQ(side.tick(5, 40), 0U);  // dropped ticks reset the proxy
+}
+
+// A stroke that the control net cannot follow: the surface is refined while the stroke goes on. Every tick
+// advances the session, none allocates, and the recording has the refinement at its tick.
+TEST(HapticSide, RefinesDuringAStrokeWithoutSkippingATick) {
+  const Workplace place;
+  Document document{"fine handle", small_handle(), Json::object()};
+  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  document.scene.tool.kind = ToolKind::point;
+  Side side(false, document);
+  side.begin_recording(place.path("refined.jsonl"));
+  side.tick(2000);
+  side.aim(at_height(0.0005, button_main));
+  const auto columns = [&] { return side.frame().snapshot.bodies[0].surface.v.control_point_count(); };
+  const auto rows = [&] { return side.frame().snapshot.bodies[0].surface.u.control_point_count(); };
+  const int first_columns = columns(), first_rows = rows();
+  std::uint64_t ticks = side.frame().snapshot.tick;
+  bool is_refined_in_stroke = false;
+  for (int i = 0; i < 20'000 && !is_refined_in_stroke; ++i) {
+    EXPECT_EQ(side.tick(4), 0U) << i;
+    ASSERT_EQ(side.frame().snapshot.tick, ticks += 4);
+    is_refined_in_stroke = side.frame().facts.in_stroke && (columns() > first_columns || rows() > first_rows);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(is_refined_in_stroke);
+  side.tick(200);
+  side.aim(at_height(0.03));
+  side.tick(400);
+  side.ask(UndoStroke{});
+  for (int i = 0; i < 20'000 && columns() + rows() != first_columns + first_rows; ++i) {
+    side.tick(4);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(columns(), first_columns);
+  EXPECT_EQ(rows(), first_rows);
+  side.tick(100);
+  side.close();
+  const auto recording = read_recording(place.path("refined.jsonl"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_TRUE(
+      std::any_of(recording->commands.begin(), recording->commands.end(),
+                  [](const TimedCommand& timed) { return timed.command["command"] == "refine_knots"; }));
+  const Outcome replayed = run({"replay", place.text("refined.jsonl"), "--no-frames"});
+  EXPECT_EQ(replayed.code, exit_done) << replayed.err;
 }
 
 TEST(HapticSide, ARecordingWithFaultsAndMissedTicksReplaysToItsOwnStates) {

@@ -52,6 +52,7 @@ PAIRS = {
 
 HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
 TICK_CASES = {"handle": HANDLE, "stiff handle": "stiff:" + HANDLE, "block 12x12x12": "block:12:6",
+              "handle, bulges": "swap:assets/recordings/grip-bulge.recording.jsonl",
               "jelly, median": "trial:assets/models/jelly-on-spoon.json",
               "jelly, p99": "trial:assets/models/jelly-on-spoon.json"}
 LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
@@ -120,6 +121,9 @@ FIGURES = (
            "the whole tick while touching, 6 substeps, p99 as above", "block 12x12x12"),
     Figure("stiff_tick_p99_us", "us", "ours", "at most", 1000,
            "the whole tick while touching, of ABS stepped implicitly, p99 as above", "stiff handle"),
+    Figure("swap_tick_us", "us", "ours", "at most", 1000,
+           "a tick before which a refinement of knots is adopted, with the adoption; the longest, thread time as above",
+           "handle, bulges"),
     Figure("trial_tick_us", "us", "ours", "at most", 250,
            "the whole tick of a trial, bundled jelly of 720 nodes on its spoon, while it tilts by 10 degrees and for "
            "two seconds after; the median over ticks", "jelly, median"),

@@ -239,6 +239,11 @@ def measured_tick(measure, figure):
     return {"ours": ticks["thread_p99_us"], "details": ticks}
 
 
+def measured_swap(measure, figure):
+    ticks = measure.ticks(TICK_CASES[figure.case])
+    return {"ours": ticks["thread_most_us"], "details": ticks}
+
+
 def measured_trial(measure, figure):
     ticks = measure.ticks(TICK_CASES[figure.case], rounds=3)
     return {"ours": ticks["thread_p99_us" if figure.case.endswith("p99") else "thread_median_us"], "details": ticks}
@@ -300,8 +305,8 @@ def measured_lattice(measure, _figure):
 def measured(measure, figure):
     if pair_of(figure):
         return measured_pair(measure, figure)
-    return {"tick_p99_us": measured_tick, "stiff_tick_p99_us": measured_tick, "trial_tick_us": measured_trial,
-            "trial_vs_peer": measured_jelly,
+    return {"tick_p99_us": measured_tick, "stiff_tick_p99_us": measured_tick, "swap_tick_us": measured_swap,
+            "trial_tick_us": measured_trial, "trial_vs_peer": measured_jelly,
             "frames_per_second": measured_frames,
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
             "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,

@@ -25,7 +25,8 @@ class MadeUp:
 
     def ticks(self, case, rounds=3):
         count = int(case.split(":")[1]) if case.startswith("block") else 0
-        return {"thread_p99_us": 1500.0 if count > 20 else 300.0, "thread_median_us": 200.0}
+        return {"thread_p99_us": 1500.0 if count > 20 else 300.0, "thread_median_us": 200.0,
+                "thread_most_us": 400.0}
 
     def jelly(self):
         alike = {"poissons_ratio": 0.49}

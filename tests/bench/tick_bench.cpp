@@ -1,6 +1,7 @@
 // tick_bench ROUNDS CASE...: plays presses and trials, and prints as JSON how long each whole tick with
 // contact took, as the median of the rounds. A case is the file of a recording, stiff:FILE,
-// block:COUNT:SUBSTEPS, or trial:DOCUMENT, whose ticks count from when the bodies have settled. Every tick is
+// block:COUNT:SUBSTEPS, swap:FILE, or trial:DOCUMENT, whose ticks count from when the bodies have settled. Of
+// swap:FILE count the ticks before which a refinement of knots is adopted, with the adoption. Every tick is
 // timed with the steady clock and with the thread's own clock, which stops while another program has the
 // processor.
 #include <time.h>
@@ -20,6 +21,7 @@
 #include "engine/base/processor.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
+#include "engine/simulation/refiner.h"
 #include "engine/trial/trial.h"
 #include "haptic/tick.h"
 #include "tests/bench/presses.h"
@@ -80,6 +82,42 @@ bool play(const Press& press, Times& times) {
   return true;
 }
 
+// A recording with refinements of knots, as a live session adopts them.
+struct Swaps {
+  Press press;
+};
+
+bool play(const Swaps& swaps, Times& times) {
+  const Press& press = swaps.press;
+  auto made = Simulation::make(press.scene, best_instruction_set());
+  if (!made) {
+    std::cerr << made.error().message << '\n';
+    return false;
+  }
+  Simulation simulation = std::move(made).value();
+  Refiner refiner(simulation);
+  CouplingState coupling;
+  std::size_t next = 0;
+  for (std::uint64_t t = 0; t < press.readings.size(); ++t) {
+    bool is_prepared = false;
+    for (; next < press.commands.size() && press.commands[next].tick <= t; ++next) {
+      const auto command = command_from_json(press.commands[next].command, "recording");
+      if (!command) continue;
+      if (const auto* const refine = std::get_if<RefineKnots>(&command.value())) {
+        is_prepared = refiner.prepare(*refine).ok();
+      } else {
+        (void)simulation.apply(command.value());
+      }
+    }
+    time_tick(times, [&] {
+      if (is_prepared) simulation.adopt(refiner);
+      (void)tick(simulation, coupling, press.device, press.readings[t]);
+      return is_prepared;
+    });
+  }
+  return true;
+}
+
 // Plays a trial that tilts by 10 degrees and goes on for two seconds.
 bool play(const Scene& scene, Times& times) {
   auto made = Simulation::make(scene, best_instruction_set());
@@ -105,7 +143,7 @@ bool play(const Scene& scene, Times& times) {
   return true;
 }
 
-using Case = std::variant<Press, Scene>;
+using Case = std::variant<Press, Swaps, Scene>;
 
 Result<Case> trial_case(const std::string& file) {
   auto document = read_document(file);
@@ -128,6 +166,12 @@ Result<Press> press_of(const std::string& name) {
 Result<Case> case_of(const std::string& name) {
   constexpr std::string_view trial = "trial:";
   if (name.starts_with(trial)) return trial_case(name.substr(trial.size()));
+  constexpr std::string_view swap = "swap:";
+  if (name.starts_with(swap)) {
+    auto press = recorded_press(name.substr(swap.size()));
+    if (!press) return press.error();
+    return Case(Swaps{std::move(press).value()});
+  }
   auto press = press_of(name);
   if (!press) return press.error();
   return Case(std::move(press).value());
@@ -169,6 +213,7 @@ Json report(const Case& played, int rounds) {
           {"p99_us", quantile(wall_us, 0.99)},
           {"thread_median_us", quantile(thread_us, 0.5)},
           {"thread_p99_us", quantile(thread_us, 0.99)},
+          {"thread_most_us", quantile(thread_us, 1.0)},
           {"one_round_thread_p99_us", median_p99(thread)}};
 }
 

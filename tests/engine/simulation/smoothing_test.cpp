@@ -49,7 +49,7 @@ double dent_m(const Simulation& simulation, double v) {
 }
 
 // Returns the largest gain of the handle's thickness beside a dent at v.
-double rim_m(const Simulation& simulation, double v) {
+double rim_height_m(const Simulation& simulation, double v) {
   double highest = 0.0;
   for (int i = -24; i <= 24; ++i) {
     const double at = v + 0.0005 * i;
@@ -118,7 +118,7 @@ TEST(Smoothing, LowersTheRimOfADentAndDoesNotDeepenItsFloor) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const double v = 0.03, radius = 0.008;
   Simulation simulation = dented(v);
-  const double rim = rim_m(simulation, v), floor = dent_m(simulation, v);
+  const double rim = rim_height_m(simulation, v), floor = dent_m(simulation, v);
   ASSERT_GT(rim, 2e-5) << "the material that a press displaces rises beside it";
   choose(simulation, ToolAction::smooth, radius);
   for (int tick = 0; tick < 1500; ++tick) {
@@ -128,7 +128,7 @@ TEST(Smoothing, LowersTheRimOfADentAndDoesNotDeepenItsFloor) {
     if (tick % 100 != 0) continue;
     ASSERT_LT(dent_m(simulation, v), 1.001 * floor) << tick;
   }
-  EXPECT_LT(rim_m(simulation, v), 0.9 * rim);
+  EXPECT_LT(rim_height_m(simulation, v), 0.9 * rim);
   EXPECT_LT(dent_m(simulation, v), floor);
 }
 
