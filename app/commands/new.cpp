@@ -454,6 +454,10 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   const std::string name = options.name.empty() ? kind.parser.name() : options.name;
   Document document = starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
   document.scene.bodies.front().rim = made->shape.rim;
+  if (!options.control) {
+    if (Status suited = suit_net_to_tool(document.scene); !suited) return suited;
+    fitted->surface = document.scene.bodies.front().surface;
+  }
   if (Status written = write_document(document, options.out, options.how); !written) return written;
 
   FactSheet facts;
@@ -477,7 +481,7 @@ void add_shape_options(OptionSet parser, NewOptions& options) {
       [](const std::string& text) { return parse_extent(text, new_control_range, "24x24"); },
       [&options](const Extent& control) { options.control = control; },
       "Control points along u and v, each from " + std::to_string(new_control_range.low) + " to " +
-          std::to_string(new_control_range.high) + "; default: as many as the tolerance needs");
+          std::to_string(new_control_range.high) + "; default: as many as the tolerance and the tool need");
   add_parsed_option(
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, new_tolerance_range_m); },

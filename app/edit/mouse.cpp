@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "engine/collision/meshes/triangle.h"
 #include "render/tessellation/tool_mesh.h"
 
 namespace spoonbill {
@@ -140,7 +141,8 @@ void SurfacePick::update(const Snapshot& snapshot) {
 
 std::optional<PickedPoint> SurfacePick::first_touch(const Ray& ray, double radius_m) const {
   double nearest = std::numeric_limits<double>::infinity();
-  Vector3 touched = Vector3::Zero();
+  const Sampled* touched_surface = nullptr;
+  std::uint32_t touched = 0;
   for (const Sampled& sampled : surfaces_) {
     const GridSamples<float>& samples = sampled.surface.samples();
     for (const std::uint32_t i : sampled.vertices) {
@@ -148,12 +150,31 @@ std::optional<PickedPoint> SurfacePick::first_touch(const Ray& ray, double radiu
       const auto t = first_crossing(ray, point, radius_m + sampled.ball_m);
       if (!t || *t >= nearest) continue;
       nearest = *t;
-      touched = point;
+      touched_surface = &sampled;
+      touched = i;
     }
   }
-  if (!std::isfinite(nearest)) return std::nullopt;
+  if (touched_surface == nullptr) return std::nullopt;
   const Vector3 centre = ray.origin_m + nearest * ray.direction;
-  return PickedPoint{centre, (centre - touched).normalized()};
+  const Vector3 point = find_nearest(*touched_surface, touched, centre);
+  const Vector3 outward = (centre - point).normalized();
+  return PickedPoint{point + radius_m * outward, outward};
+}
+
+// Returns the point nearest to `to` of the triangles at a vertex.
+Vector3 SurfacePick::find_nearest(const Sampled& sampled, std::uint32_t vertex, const Vector3& to) {
+  const GridSamples<float>& samples = sampled.surface.samples();
+  const std::vector<std::uint32_t>& corners = sampled.surface.indices();
+  Vector3 nearest = position(samples, vertex);
+  for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
+    if (std::find(&corners[t], &corners[t] + 3, vertex) == &corners[t] + 3) continue;
+    const Vector3 a = position(samples, corners[t]), b = position(samples, corners[t + 1]),
+                  c = position(samples, corners[t + 2]);
+    if ((b - a).cross(c - a).isZero(0.0)) continue;  // a triangle at a pole
+    const Vector3 point = nearest_on_triangle(a, b, c, to).point;
+    if ((point - to).squaredNorm() < (nearest - to).squaredNorm()) nearest = point;
+  }
+  return nearest;
 }
 
 namespace {

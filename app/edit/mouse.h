@@ -65,8 +65,8 @@ class SurfacePick {
   void update(const Snapshot& snapshot);
 
   // Returns the first contact of a sphere of this radius that moves along the ray; empty if the sphere misses
-  // all surfaces. Each sample point of a surface counts as a small ball, so that the sphere cannot sink in
-  // between the samples.
+  // all surfaces. Each sample point of a surface counts as a small ball, so that the sphere does not pass
+  // between the samples; the sphere then rests on the triangles at the sample point.
   std::optional<PickedPoint> first_touch(const Ray& ray, double radius_m) const;
 
  private:
@@ -77,6 +77,7 @@ class SurfacePick {
     std::uint64_t topology = 0;  // topology_version() of the surface when `vertices` was made
   };
   static void update_vertices(Sampled& sampled);
+  static Vector3 find_nearest(const Sampled& sampled, std::uint32_t vertex, const Vector3& to);
 
   std::vector<Sampled> surfaces_;
 };

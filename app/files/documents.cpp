@@ -11,6 +11,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "engine/base/text.h"
+#include "engine/bspline/halve_elements.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/file_format.h"
 #include "engine/fitting/fit_scan.h"
@@ -18,6 +19,7 @@
 #include "engine/shapes/exact_shape.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/stock_shapes.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 namespace {
@@ -244,10 +246,20 @@ Document starting_document(const std::string& name, Surface surface, const Mater
   scene.planes.push_back(foot_plane(box, median_m));
   scene.tool.radius_m =
       std::clamp(round_down(tool_fraction * std::max(median_m, 1e-4)), 1e-5, tool_radius_range_m.high);
+  scene.tool.reach = ToolReach::local;
   const double pressed_n = 0.5 * material.youngs_modulus_pa * scene.tool.radius_m * scene.tool.radius_m;
   scene.sculpting.force_scale =
       std::clamp(round_down(target_force_n / pressed_n), 1e-6, force_scale_range.high);
   return document;
+}
+
+Status suit_net_to_tool(Scene& scene) {
+  Surface& surface = scene.bodies.front().surface;
+  Result<Surface> suited = halve_long_elements(surface, scene.tool.radius_m, refined_control_point_limit,
+                                               control_point_count_range.high);
+  if (!suited) return suited.error();
+  surface = std::move(suited).value();
+  return {};
 }
 
 std::span<const StockShapeKind> stock_shape_kinds() {
@@ -282,6 +294,7 @@ Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const
   Document document = starting_document(lower_case(all_stock_shapes()[choice.kind].name),
                                         std::move(fitted->surface), material, sized.shell_thickness_m);
   document.scene.bodies.front().rim = shape->rim;
+  if (Status suited = suit_net_to_tool(document.scene); !suited) return suited.error();
   return document;
 }
 

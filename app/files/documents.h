@@ -38,11 +38,17 @@ std::vector<std::string> shipped_material_names();
 // as "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
-// Returns a document with one body around the surface. A plane fixes a tenth of the body's height at its foot
-// or, if the body is flat, a tenth of its length at the left end. The radius of the ball tool follows from
-// the body's size, and the force scale makes the forces perceptible. `shell_thickness_m`: see Body.
+// Returns a document with one body around the surface, to be shaped by local strokes. A plane fixes a tenth
+// of the body's height at its foot or, if the body is flat, a tenth of its length at the left end. The radius
+// of the ball tool follows from the body's size, and the force scale makes the forces perceptible.
+// `shell_thickness_m`: see Body.
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
+
+// Halves the elements of the first body's surface that are longer than the tool's radius, exactly, so that
+// the surface follows a stroke from the start; unless it would get more control points than the program adds
+// by itself.
+Status suit_net_to_tool(Scene& scene);
 
 // A size of a stock shape, such as the radius.
 struct StockShapeField {

@@ -91,6 +91,7 @@ LocalStroke::LocalStroke(std::span<const BodyState> bodies) {
         std::max(samples, static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns()));
   }
   nodes_.reserve(nodes);
+  narrower_.reserve(nodes);
   distance_m_.resize(samples, unreached);
   // A sample is pushed again each time that one of its eight neighbours shortens its distance.
   heap_.reserve(9 * samples);
@@ -101,6 +102,8 @@ void LocalStroke::carry_over(const LocalStroke& other) {
   SPOONBILL_ASSERT(nodes_.capacity() >= other.nodes_.size());
   touch_ = other.touch_;
   point_ = other.point_;
+  moved_m_ = other.moved_m_;
+  pressed_m_ = other.pressed_m_;
   radius_m_ = other.radius_m_;
   elastic_m_ = other.elastic_m_;
   is_spent_ = other.is_spent_;
@@ -112,11 +115,33 @@ void LocalStroke::begin(const ToolSpot& touch, const BodyState& state, double ra
   SPOONBILL_ASSERT(touch.body >= 0 && radius_m > 0.0);
   if (!is_active()) elastic_m_ = 0.0;
   touch_ = touch;
-  is_spent_ = false;
   point_ = state.mapping().at(touch.u, touch.v);
+  moved_m_.setZero();
+  pressed_m_ = 0.0;
   radius_m_ = radius_m;
-  const TouchedPoint at{touch.u, touch.v, point_.rest_m(state.lattice),
-                        unit_normal(state.mapping().rest(), touch.u, touch.v)};
+  is_spent_ = false;
+  find_nodes(state);
+}
+
+void LocalStroke::widen(const BodyState& state, double radius_m) {
+  SPOONBILL_ASSERT(is_active() && radius_m > 0.0);
+  radius_m_ = radius_m;
+  is_spent_ = false;
+  narrower_.assign(nodes_.begin(), nodes_.end());
+  find_nodes(state);
+  // Both lists are in the order of the nodes. A node of the narrower region that is not in the wider one
+  // keeps its place.
+  auto wider = nodes_.begin();
+  for (const WeighedNode& node : narrower_) {
+    while (wider != nodes_.end() && wider->node < node.node) ++wider;
+    if (wider != nodes_.end() && wider->node == node.node) wider->pressed_m = node.pressed_m;
+  }
+}
+
+// Finds the nodes within the radius, their weights and the share of the touched point.
+void LocalStroke::find_nodes(const BodyState& state) {
+  const TouchedPoint at{touch_.u, touch_.v, point_.rest_m(state.lattice),
+                        unit_normal(state.mapping().rest(), touch_.u, touch_.v)};
   CoarseGrid grid(state.mapping());
   march(state, grid, at);
   weigh_nodes(state, at, find_thickness_m(state, grid, at));
@@ -218,12 +243,15 @@ double LocalStroke::find_thickness_m(const BodyState& state, const CoarseGrid& g
   const BodyMapping& mapping = state.mapping();
   const int samples = grid.rows * grid.columns;
   const int stride = std::max(1, samples / samples_for_thickness);
+  const double nearest_m = 0.01 * radius_m_;
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < samples; s += stride) {
     const Vector3 to = at.point_m - mapping.embedded_rest_m(s);
     const double inward = to.dot(at.normal), square = to.squaredNorm();
-    // Samples beside the touched point, nearly in its tangent plane, say nothing about the thickness.
-    if (inward > 0.1 * std::sqrt(square)) least = std::min(least, square / inward);
+    // Samples beside the touched point, nearly in its tangent plane, say nothing about the thickness, and the
+    // direction to one that coincides with it is rounding.
+    if (square > nearest_m * nearest_m && inward > 0.1 * std::sqrt(square))
+      least = std::min(least, square / inward);
   }
   return least;
 }
@@ -263,7 +291,7 @@ void LocalStroke::weigh_nodes(const BodyState& state, const TouchedPoint& at, do
     const double s = (to_sample + across(from_sample)).norm() / radius_m_;
     if (!(s < 1.0) || !(depth < depth_m)) continue;
     const double weight = (1.0 - s * s) * (1.0 - s * s) * (1.0 - depth / depth_m);
-    if (weight > least_weight) nodes_.push_back({n, weight});
+    if (weight > least_weight) nodes_.push_back({n, weight, 0.0});
   }
 }
 
@@ -272,12 +300,30 @@ void LocalStroke::move(SpringLattice& lattice, const Vector3& move_m) {
   if (is_spent_) return;
   const Vector3 before_m = point_m(lattice);
   for (const WeighedNode& node : nodes_) lattice.reform(node.node, node.weight * move_m);
-  const double moved_m = (point_m(lattice) - before_m).norm();
+  record_move(lattice, before_m, share_ * move_m.norm());
+}
+
+void LocalStroke::press(SpringLattice& lattice, double deeper_m, double most_m) {
+  SPOONBILL_ASSERT(is_active() && deeper_m >= 0.0 && most_m >= 0.0);
+  if (is_spent_) return;
+  const Vector3 before_m = point_m(lattice);
+  pressed_m_ += deeper_m;
+  for (WeighedNode& node : nodes_) {
+    const double move_m = std::min(node.weight * pressed_m_ - node.pressed_m, most_m);
+    if (move_m > 0.0 && lattice.reform(node.node, -move_m * touch_.normal)) node.pressed_m += move_m;
+  }
+  record_move(lattice, before_m, share_ * deeper_m);
+}
+
+// Adds a move of the touched point. The stroke is spent if it is much shorter than was asked.
+void LocalStroke::record_move(const SpringLattice& lattice, const Vector3& before_m, double asked_m) {
+  const Vector3 point_moved_m = point_m(lattice) - before_m;
+  const double moved_m = point_moved_m.norm();
+  moved_m_ += point_moved_m;
   elastic_m_ += moved_m;
   // If only nodes beside the touched point still moved, the surface would become uneven. Shorter moves are
   // lost in the rounding of displacements.
   constexpr double least_part = 0.5, least_move_m = 2e-7;
-  const double asked_m = share_ * move_m.norm();
   is_spent_ = asked_m > least_move_m && moved_m < least_part * asked_m;
 }
 

@@ -36,6 +36,7 @@ struct ToolSpot {
   int body = -1;                     // index of the body, or -1
   double u = 0.0, v = 0.0;           // the point
   Vector3 tool_m = Vector3::Zero();  // position of the tool
+  Vector3 normal = Vector3::Zero();  // outward unit normal of the surface
 };
 
 // Region and progress of one local stroke. Owned by the contact of a tool. Only the constructor allocates.
@@ -46,16 +47,24 @@ class LocalStroke {
   // Finds the nodes that a stroke of this radius at this point moves, and their weights. A stroke that is
   // active goes on there. `state` is that of the touched body.
   void begin(const ToolSpot& touch, const BodyState& state, double radius_m);
+  // Gives an active stroke another radius at the same point. A stroke that moved nothing any more may go on.
+  void widen(const BodyState& state, double radius_m);
   void end() { touch_.body = -1; }
   bool is_active() const { return touch_.body >= 0; }
   int body() const { return touch_.body; }
-  // Position of the tool when it touched the point.
-  const Vector3& tool_start_m() const { return touch_.tool_m; }
+  // The touch of begin().
+  const ToolSpot& touch() const { return touch_; }
+  // Returns how far the touched point has been moved inward since begin().
+  double depth_m() const { return -moved_m_.dot(touch_.normal); }
 
   // Moves the touched point by `move_m` and the nodes around it by their weights, in the body of begin(). A
   // node whose springs or cells cannot take the new shape stays (SpringLattice::reform()). Once the touched
   // point itself hardly moves, the stroke moves nothing until the next begin().
   void move(SpringLattice& lattice, const Vector3& move_m);
+  // Presses the touched point inward by another `deeper_m`, with the same limits. The dent has the profile of
+  // the present radius, as if it had been pressed with it from the start: after widen(), nodes beside the
+  // point catch up by at most `most_m` in a call.
+  void press(SpringLattice& lattice, double deeper_m, double most_m);
 
   // Lets the material take its new place for `time_s`: the elastic depth, in which move() has put it, decays
   // with local_relaxation_s.
@@ -74,10 +83,12 @@ class LocalStroke {
   void visit_state(Visitor&& visit) const {
     if (!is_active()) return;
     for (const double* value : {&touch_.u, &touch_.v}) visit(value, 1);
-    visit(touch_.tool_m.data(), 3);
+    for (const Vector3* value : {&touch_.tool_m, &touch_.normal, &moved_m_}) visit(value->data(), 3);
     for (const double* value : {&radius_m_, &elastic_m_}) visit(value, 1);
     const double spent = is_spent_ ? 1.0 : 0.0;
     visit(&spent, 1);
+    visit(&pressed_m_, 1);
+    for (const WeighedNode& node : nodes_) visit(&node.pressed_m, 1);
   }
 
  private:
@@ -89,6 +100,7 @@ class LocalStroke {
   struct WeighedNode {
     int node = 0;
     double weight = 0.0;
+    double pressed_m = 0.0;  // inward move by press() since begin()
   };
   // The touched point in the rest shape.
   struct TouchedPoint {
@@ -100,17 +112,21 @@ class LocalStroke {
   // A grid of samples of which every stride-th counts, with wrapped neighbours.
   struct CoarseGrid;
 
+  void find_nodes(const BodyState& state);
   void march(const BodyState& state, const CoarseGrid& grid, const TouchedPoint& at);
   double find_distance(const BodyMapping& mapping, int from, const Ring& ring, std::size_t at) const;
   double find_thickness_m(const BodyState& state, const CoarseGrid& grid, const TouchedPoint& at) const;
   void weigh_nodes(const BodyState& state, const TouchedPoint& at, double thickness_m);
+  void record_move(const SpringLattice& lattice, const Vector3& before_m, double asked_m);
 
   ToolSpot touch_;
-  EmbeddedPoint point_;  // the touched point
+  EmbeddedPoint point_;                // the touched point
+  Vector3 moved_m_ = Vector3::Zero();  // sum of its moves since begin()
   double radius_m_ = 0.0, elastic_m_ = 0.0;
-  double share_ = 0.0;     // part of a move that the touched point makes: the mean weight of its nodes
-  bool is_spent_ = false;  // true if the material takes no further move
-  std::vector<WeighedNode> nodes_;
+  double pressed_m_ = 0.0;  // inward move of a node of weight 1 that press() has asked for since begin()
+  double share_ = 0.0;      // part of a move that the touched point makes: the mean weight of its nodes
+  bool is_spent_ = false;   // true if the material takes no further move
+  std::vector<WeighedNode> nodes_, narrower_;  // narrower_ is working memory of widen()
   // Working memory: distances of all samples of a body, a heap of distances and samples, and the samples
   // within the radius.
   std::vector<float> distance_m_;

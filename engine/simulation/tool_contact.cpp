@@ -166,6 +166,17 @@ void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) 
   gripped_ = true;
 }
 
+void ToolContact::push_nearest(std::span<const BodyState> bodies, const ToolHold& hold) {
+  constraints_.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (contacts_[b].collision.found) {
+      add_nearest_pushes(static_cast<int>(b), bodies[b], hold, !is_surface());
+    } else {
+      contacts_[b].points.fill({});
+    }
+  }
+}
+
 void ToolContact::grip_nearest(std::span<const BodyState> bodies, const ToolHold& hold) {
   constraints_.clear();
   const int body = deepest_body();
@@ -354,18 +365,24 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
   }
 }
 
-void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
-  BodyContact& contact = contacts_[body];
-  const SurfaceContact& nearest = contact.collision.nearest;
-  if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
-  if (!is_solid_) return add_sphere_pushes(body, state, hold);
+// Adds the push at the nearest point and, if asked, those at the nearest points of earlier ticks.
+void ToolContact::add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold,
+                                     bool with_earlier) {
+  const SurfaceContact& nearest = contacts_[body].collision.nearest;
   const std::size_t point = track_nearest(body, state, hold.reach_m);
   add_plane_push(body, state,
                  {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)},
                  hold);
+  if (with_earlier) add_earlier_pushes(body, state, point, hold);
+}
+
+void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
+  BodyContact& contact = contacts_[body];
+  if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
+  if (!is_solid_) return add_sphere_pushes(body, state, hold);
   // A B-spline tool needs no pushes at the nearest points of earlier ticks, because visit_near() visits all
   // of its locally nearest points.
-  if (!is_surface()) add_earlier_pushes(body, state, point, hold);
+  add_nearest_pushes(body, state, hold, !is_surface());
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
 

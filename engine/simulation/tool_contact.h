@@ -48,6 +48,9 @@ class ToolContact {
   // Keeps the bodies' surfaces out of the tool in this tick; the surfaces slide along the tool. To be called
   // by kernels, after prepare() has found the contacts.
   void push(std::span<const BodyState> bodies, const ToolHold& hold);
+  // Keeps only the nearest points of the surfaces out of the tool in this tick. For bodies that do not yield
+  // to the tool's force.
+  void push_nearest(std::span<const BodyState> bodies, const ToolHold& hold);
   // Holds the part of the surface that is inside the tool fixed in the tool's frame, until release(). To be
   // called by kernels, after prepare() has found the contacts.
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
@@ -141,6 +144,7 @@ class ToolContact {
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
+  void add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold, bool with_earlier);
   void add_pushes_between_samples(int body, const BodyState& state);
   void add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold);
   // Returns the gap between the tool and the point (u, v) of the body's surface, or of the far face of a

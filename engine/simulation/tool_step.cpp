@@ -46,6 +46,12 @@ void smooth(Simulation::State& s, HeldTool& held) {
   if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
 }
 
+// Push with a local reach: the tool rests on the surface, not on the chords between the nodes of the lattice,
+// which are higher in a dent.
+void push_nearest(ToolContact& contact, const ToolTouch& touch) {
+  contact.push_nearest(touch.bodies, touch.hold);
+}
+
 // Pull with a local reach: holds the touched point, from which the stroke then moves the material.
 void hold_point(ToolContact& contact, const ToolTouch& touch) {
   if (!touch.hold.gripping) return contact.release();
@@ -75,6 +81,21 @@ double find_resistance_n(const Tool& tool, const Material& material, double dept
   return std::min(hertz_n, local_resistance * coupling_n_per_m * depth_m);
 }
 
+// Returns the radius from which on the dent of a stroke is nowhere narrower than a sphere in it, or a tenth
+// more than `now_m` if its sides stop the sphere all the same; 0 if the radius is given. Near its lowest
+// point, a dent of depth d and radius R rises as 2 d (s / R)^2, a sphere of radius r as s^2 / (2 r). A fifth
+// more leaves room where the body is hollow. The radius ends at the sphere's diameter, beyond which a dent
+// would be no local stroke.
+double find_fitting_radius_m(const Tool& tool, double depth_m, double now_m, bool sides_stop) {
+  if (tool.local_radius_m > 0.0 || tool.kind == ToolKind::point) return 0.0;
+  const double fitting_m = 1.2 * std::sqrt(4.0 * std::max(0.0, depth_m) * tool.radius_m);
+  return std::min(std::max(fitting_m, sides_stop ? 1.1 * now_m : 0.0), 2.0 * tool.radius_m);
+}
+
+// Gap from which on a tool has left the point that it pressed. Nearer, the stroke goes on with the next
+// touch.
+constexpr double local_release_m = 5e-4;
+
 // Push or pull with a local reach: moves the material around the touched point to where the hand is, less
 // what its resistance takes.
 void reform_locally(Simulation::State& s, HeldTool& held) {
@@ -84,36 +105,57 @@ void reform_locally(Simulation::State& s, HeldTool& held) {
   const bool pulls = s.scene.tool.action == ToolAction::pull;
   const CollisionResult& collision = held.contact.collision(number);
   const bool is_rigid = s.bodies[static_cast<std::size_t>(number)].rigid.has_value();
-  if (constraints.count() == 0 || is_rigid || !(pulls ? held.contact.gripped() : collision.found)) {
-    return stroke.end();
-  }
+  const bool has_left =
+      pulls ? !held.contact.gripped() : !collision.found || -collision.nearest.depth_m > local_release_m;
+  if (is_rigid || has_left) return stroke.end();
   // A light touch may push in some ticks only.
-  if (!pulls && !constraints.acted()) return stroke.relax(tick_s);
+  if (constraints.count() == 0 || (!pulls && !constraints.acted())) return stroke.relax(tick_s);
   const SurfaceContact& nearest = collision.nearest;
   // A tool that slides shapes the material where it is now. Where it is, its position tells, because the
   // surface may be behind the material.
   constexpr double same_place = 0.25;
   const auto has_slid = [&] {
-    const Vector3 moved_m = held.state.position_m - stroke.tool_start_m();
-    return (moved_m - moved_m.dot(nearest.normal) * nearest.normal).norm() > same_place * stroke.radius_m();
+    const Vector3& normal = stroke.touch().normal;
+    const Vector3 moved_m = held.state.position_m - stroke.touch().tool_m;
+    return (moved_m - moved_m.dot(normal) * normal).norm() > same_place * stroke.radius_m();
   };
   if (!stroke.is_active() || (!pulls && (number != stroke.body() || has_slid()))) {
     BodyState& touched = s.bodies[static_cast<std::size_t>(number)];
-    stroke.begin({number, nearest.u, nearest.v, held.state.position_m}, touched,
+    stroke.begin({number, nearest.u, nearest.v, held.state.position_m, nearest.normal}, touched,
                  choose_local_radius_m(s.scene.tool, touched));
   }
   BodyState& body = s.bodies[static_cast<std::size_t>(stroke.body())];
-  Vector3 lag_m = held.hand.position_m - held.state.position_m;
-  if (!pulls) lag_m = std::min(0.0, lag_m.dot(nearest.normal)) * nearest.normal;
-  const double lag = lag_m.norm();
+  // The material follows until the tool is where the hand is, which takes a little more than the asked depth
+  // while the surface is behind the material. Where the sides of a dent stop the tool, only the touched point
+  // still follows the hand.
+  constexpr double deepest = 1.05;  // times the asked depth
+  const Vector3 lag_vector_m = held.hand.position_m - held.state.position_m;
+  double lag_m = lag_vector_m.norm();
+  bool sides_stop = false;
+  if (!pulls) {
+    const Vector3& normal = stroke.touch().normal;
+    const Vector3 aside_m = nearest.point_m - stroke.point_m(body.lattice);
+    sides_stop = (aside_m - aside_m.dot(normal) * normal).norm() > same_place * stroke.radius_m();
+    const double asked_m = -(held.hand.position_m - stroke.touch().tool_m).dot(normal);
+    lag_m =
+        std::max(0.0, sides_stop ? asked_m - stroke.depth_m()
+                                 : std::min(-lag_vector_m.dot(normal), deepest * asked_m - stroke.depth_m()));
+  }
   const double coupling = constraints.motion().coupling_n_per_m;
   const double resistance_n =
       find_resistance_n(s.scene.tool, body.lattice.material(), stroke.elastic_m(), coupling);
   stroke.relax(tick_s);
-  const double free_m = lag - resistance_n / coupling;
-  if (!(free_m > 0.0)) return;
   const double largest_m = local_step_cells * static_cast<double>(body.lattice.cell_size_m());
-  stroke.move(body.lattice, std::min(local_follow * free_m, largest_m) / lag * lag_m);
+  const double step_m = std::clamp(local_follow * (lag_m - resistance_n / coupling), 0.0, largest_m);
+  if (pulls) {
+    if (step_m > 0.0) stroke.move(body.lattice, step_m / lag_m * lag_vector_m);
+  } else {
+    constexpr double least_growth = 1.09;
+    const double wider_m =
+        find_fitting_radius_m(s.scene.tool, stroke.depth_m(), stroke.radius_m(), sides_stop);
+    if (wider_m > least_growth * stroke.radius_m()) stroke.widen(body, wider_m);
+    stroke.press(body.lattice, step_m, largest_m);
+  }
   if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
 }
 
@@ -124,7 +166,7 @@ constexpr ToolKernel kernels[] = {
     {.constrain = pull},
     {.constrain = push, .reform = smooth, .body_yields = false},
 };
-constexpr ToolKernel local_push{.constrain = push, .reform = reform_locally, .body_yields = false};
+constexpr ToolKernel local_push{.constrain = push_nearest, .reform = reform_locally, .body_yields = false};
 constexpr ToolKernel local_pull{.constrain = hold_point, .reform = reform_locally, .body_yields = false};
 static_assert(std::size(kernels) == tool_actions.size(), "each tool action must have a kernel");
 static_assert(std::all_of(std::begin(kernels), std::end(kernels),

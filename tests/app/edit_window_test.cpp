@@ -1,14 +1,10 @@
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "tests/app/edit_window.h"
 
-#include <chrono>
+#include <gtest/gtest.h>
+
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "app/live/autosave.h"
 #include "app/program.h"
@@ -19,167 +15,25 @@
 #include "tests/app/workplace.h"
 #include "tests/render/compare.h"
 #include "tests/render/read_png.h"
-#include "tests/render/virtual_display.h"
 
 namespace spoonbill {
 namespace {
 
-using namespace std::chrono_literals;
-
-// The editor in a window, controlled by X events from xdotool. Software drawing on a loaded machine takes up
-// to a second per frame, so every test waits until the frame log shows a state, not for a fixed time.
-class EditWindow : public testing::Test {
+// Tests with a handle on whose upper edge, right of the panel, the mouse presses and drags down.
+class HandleWindow : public EditWindow {
  protected:
-  void SetUp() override {
-    auto display = VirtualDisplay::start(1300, 760);
-    ASSERT_TRUE(display) << display.error().message;
-    display_ = std::move(display).value();
-    setenv("XDG_STATE_HOME", place_.text("state").c_str(), 1);
-  }
-  void TearDown() override { kill_editor(); }
-
-  void start(const std::vector<std::string>& arguments) {
-    std::filesystem::remove(log_file());
-    std::string command = "exec \"" SPOONBILL_PROGRAM "\" edit";
-    for (const std::string& argument : arguments) command += " \"" + argument + "\"";
-    editor_ = fork();
-    ASSERT_GE(editor_, 0);
-    if (editor_ == 0) {
-      setenv("SPOONBILL_FRAME_LOG", log_file().c_str(), 1);
-      setenv("DISPLAY", display_->name().c_str(), 1);
-      execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-      _exit(127);
-    }
-    ASSERT_TRUE(wait_for([&] { return hands("search --onlyvisible --name Spoonbill windowfocus --sync"); }));
-    ASSERT_TRUE(wait_frames(2));
-  }
-
-  std::filesystem::path log_file() const { return place_.path("frames.log"); }
-
-  // Presses a key until this field of the frames is false.
-  bool press_while(const std::string& key, const std::string& field) {
-    constexpr int most_strokes = 10;
-    for (int stroke = 0; stroke < most_strokes && shown()[field].get<bool>(); ++stroke) {
-      if (!hands("key " + key) || !wait_frames(3)) return false;
-    }
-    return wait_shown([&](const Json& frame) { return !frame[field].get<bool>(); });
-  }
-
-  // Returns the last frame shown, with the fields of ShownFrame; empty before the first frame.
-  Json shown() const {
-    std::ifstream log(log_file());
-    std::string line, last;
-    while (std::getline(log, line) && !log.eof()) last = line;
-    return last.empty() ? Json::object() : json_of(last);
-  }
-
-  // Waits until a frame satisfies the condition.
-  template <class Condition>
-  bool wait_shown(Condition condition) const {
-    return wait_for([&] {
-      const Json frame = shown();
-      return !frame.empty() && condition(frame);
-    });
-  }
-
-  // Waits until `count` further frames were started and shown. They show the effects of all earlier events.
-  bool wait_frames(int count) const {
-    const Json before = shown();
-    const int from = before.empty() ? 0 : before["frame"].get<int>();
-    return wait_shown([&](const Json& frame) { return frame["frame"].get<int>() > from + count; });
-  }
-
-  // Waits until `count` further ticks were computed, which takes longer on a loaded machine.
-  bool wait_ticks(int count) const {
-    const int from = shown()["tick"].get<int>();
-    return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
-  }
-
-  // Moves the pointer and waits until the editor has seen it there. Unless the button is pressed, also waits
-  // until the device has reached the position that the mouse sets.
-  bool move_to(int x, int y) const {
-    if (!hands("mousemove " + std::to_string(x) + " " + std::to_string(y))) return false;
-    return wait_shown(
-               [&](const Json& frame) { return frame["pointer_x_px"] == x && frame["pointer_y_px"] == y; }) &&
-           wait_frames(1) && wait_shown([](const Json& frame) {
-             return frame["pressing"].get<bool>() || frame["hand_lag_m"].get<double>() < 2e-4;
-           });
-  }
-
-  // Holds the keys down until frames have seen them, because a text field reads only the present state of the
-  // keys.
-  void press(const std::string& keys) const {
-    std::string down, up;
-    std::istringstream words(keys);
-    for (std::string key; words >> key;) {
-      down += "keydown " + key + " ";
-      up = "keyup " + key + " " + up;
-    }
-    EXPECT_TRUE(hands(down));
-    EXPECT_TRUE(wait_frames(2));
-    EXPECT_TRUE(hands(up));
-    EXPECT_TRUE(wait_frames(2));
-  }
-
-  bool hands(const std::string& what) const {
-    const std::string command = "DISPLAY=" + display_->name() + " xdotool " + what + " >/dev/null 2>&1";
-    return std::system(command.c_str()) == 0;
-  }
-
-  template <class Condition>
-  bool wait_for(Condition condition) const {
-    const auto give_up = std::chrono::steady_clock::now() + 300s;
-    while (std::chrono::steady_clock::now() < give_up) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(20ms);
-    }
-    return false;
-  }
-
-  // Saves the document and reads the file once it is newer than `older`.
-  Document saved(const std::string& name, std::filesystem::file_time_type older) {
-    EXPECT_TRUE(hands("key ctrl+s"));
-    EXPECT_TRUE(wait_for([&] { return std::filesystem::last_write_time(place_.path(name)) > older; }));
-    auto document = read_document(place_.path(name));
-    EXPECT_TRUE(document) << document.error().message;
-    return std::move(document).value();
-  }
-  std::filesystem::file_time_type time_of(const std::string& name) const {
-    return std::filesystem::last_write_time(place_.path(name));
-  }
-
-  // Presses on the handle's upper edge, right of the panel, and drags down.
   void stroke() {
     EXPECT_TRUE(move_to(900, 250));
-    EXPECT_TRUE(hands("mousedown 1"));
-    EXPECT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
+    EXPECT_TRUE(press_button());
     for (int y = 260; y <= 350; y += 30) {
       EXPECT_TRUE(move_to(900, y));
       EXPECT_TRUE(wait_ticks(100));
     }
     EXPECT_TRUE(wait_shown([](const Json& frame) { return frame["in_stroke"].get<bool>(); }));
-    EXPECT_TRUE(hands("mouseup 1"));
-    EXPECT_TRUE(wait_shown([](const Json& frame) { return !frame["pressing"].get<bool>(); }));
+    EXPECT_TRUE(release_button());
     EXPECT_TRUE(move_to(900, 150));
     EXPECT_TRUE(wait_shown([](const Json& frame) { return !frame["in_stroke"].get<bool>(); }));
   }
-
-  int wait_for_end() {
-    int status = 0;
-    const bool ended = wait_for([&] { return waitpid(editor_, &status, WNOHANG) == editor_; });
-    if (ended) editor_ = -1;
-    return ended && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void kill_editor() {
-    if (editor_ <= 0) return;
-    kill(editor_, SIGKILL);
-    waitpid(editor_, nullptr, 0);
-    editor_ = -1;
-  }
-
-  Workplace place_;
-  std::unique_ptr<VirtualDisplay> display_;
-  pid_t editor_ = -1;
 };
 
 double largest_difference(const Document& a, const Document& b) {
@@ -201,7 +55,7 @@ Document held_model() {
   return std::move(document).value();
 }
 
-TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
+TEST_F(HandleWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   const Document original = saved("handle.json", time_of("handle.json"));
@@ -244,7 +98,7 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   EXPECT_EQ(run({"replay", place_.text("again.jsonl"), "--no-frames"}).code, exit_done);
 }
 
-TEST_F(EditWindow, BeginsAnewWithALump) {
+TEST_F(HandleWindow, BeginsAnewWithALump) {
   start({});
   const int session = shown()["session"].get<int>();
   const auto wait_prompt = [&](const std::string& prompt) {
@@ -267,7 +121,7 @@ TEST_F(EditWindow, BeginsAnewWithALump) {
   EXPECT_EQ(document->scene.bodies[0].name, "sphere");
 }
 
-TEST_F(EditWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
+TEST_F(HandleWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   ASSERT_TRUE(hands("keydown shift"));
@@ -287,7 +141,7 @@ TEST_F(EditWindow, ShiftSmoothsUntilTheButtonIsLetGo) {
   EXPECT_EQ(run({"replay", place_.text("session.jsonl"), "--no-frames"}).code, exit_done);
 }
 
-TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
+TEST_F(HandleWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   const std::string before = json_to_page(document_to_json(held_model()));
   start({place_.text("handle.json")});
@@ -396,7 +250,7 @@ TEST_F(RecoveryQuestion, TheSavedVersionIsOpenedAndTheUnsavedWorkIsKept) {
   EXPECT_EQ(saved("handle.json", time_of("handle.json")).scene.planes.size(), 1U);
 }
 
-TEST_F(EditWindow, AsksBeforeItReplacesAFileThatAnotherProgramChanged) {
+TEST_F(HandleWindow, AsksBeforeItReplacesAFileThatAnotherProgramChanged) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json")});
   Document theirs = held_model();
