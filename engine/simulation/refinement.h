@@ -31,8 +31,8 @@ struct RefinementScene {
 
 // Prepares a refinement. Without ranges, it halves the elements at the body's last residual. Otherwise it
 // depends only on what stays the same between two changes of the build. Refuses a body with a mesh, a body
-// that is not behind its lattice if the ranges are missing, and too large nets.
-// The bodies are as before when it returns.
+// that is not behind its lattice if the ranges are missing, and too large nets. The bodies are as before when
+// it returns.
 Result<PreparedRefinement> prepare_refinement(const RefineKnots& command, std::vector<BodyState>& bodies,
                                               const RefinementScene& scene);
 

@@ -96,6 +96,45 @@ double find_fitting_radius_m(const Tool& tool, double depth_m, double now_m, boo
 // touch.
 constexpr double local_release_m = 5e-4;
 
+// Part of a stroke's radius within which two places count as the same.
+constexpr double same_place = 0.25;
+
+double find_distance_across(const Vector3& from_m, const Vector3& to_m, const Vector3& normal) {
+  const Vector3 way_m = to_m - from_m;
+  return (way_m - way_m.dot(normal) * normal).norm();
+}
+
+// A tool that slides shapes the material where it is now. Where it is, its position tells, because the
+// surface may be behind the material.
+bool has_slid(const LocalStroke& stroke, const Vector3& tool_m) {
+  const ToolSpot& touch = stroke.touch();
+  return find_distance_across(touch.tool_m, tool_m, touch.normal) > same_place * stroke.radius_m();
+}
+
+// Progress of a press: how far the material is behind the hand, and whether the sides of the dent stop the
+// tool instead of the touched point.
+struct PressLag {
+  double lag_m = 0.0;
+  bool sides_stop = false;
+};
+
+// Returns how far the material must follow until the tool is where the hand is, which takes a little more
+// than the asked depth while the surface is behind the material. Where the sides of a dent stop the tool,
+// only the touched point still follows the hand.
+PressLag find_press_lag(const LocalStroke& stroke, const HeldTool& held, const Vector3& nearest_m,
+                        const SpringLattice& lattice) {
+  constexpr double deepest = 1.05;  // times the asked depth
+  const Vector3& normal = stroke.touch().normal;
+  const Vector3& hand_m = held.hand.position_m;
+  const bool sides_stop =
+      find_distance_across(stroke.point_m(lattice), nearest_m, normal) > same_place * stroke.radius_m();
+  const double asked_m = -(hand_m - stroke.touch().tool_m).dot(normal);
+  const double tool_lag_m = -(hand_m - held.state.position_m).dot(normal);
+  const double lag_m =
+      sides_stop ? asked_m - stroke.depth_m() : std::min(tool_lag_m, deepest * asked_m - stroke.depth_m());
+  return {std::max(0.0, lag_m), sides_stop};
+}
+
 // Push or pull with a local reach: moves the material around the touched point to where the hand is, less
 // what its resistance takes.
 void reform_locally(Simulation::State& s, HeldTool& held) {
@@ -104,55 +143,35 @@ void reform_locally(Simulation::State& s, HeldTool& held) {
   const int number = held.contact.deepest_body();
   const bool pulls = s.scene.tool.action == ToolAction::pull;
   const CollisionResult& collision = held.contact.collision(number);
+  const SurfaceContact& nearest = collision.nearest;
   const bool is_rigid = s.bodies[static_cast<std::size_t>(number)].rigid.has_value();
   const bool has_left =
-      pulls ? !held.contact.gripped() : !collision.found || -collision.nearest.depth_m > local_release_m;
+      pulls ? !held.contact.gripped() : !collision.found || -nearest.depth_m > local_release_m;
   if (is_rigid || has_left) return stroke.end();
   // A light touch may push in some ticks only.
   if (constraints.count() == 0 || (!pulls && !constraints.acted())) return stroke.relax(tick_s);
-  const SurfaceContact& nearest = collision.nearest;
-  // A tool that slides shapes the material where it is now. Where it is, its position tells, because the
-  // surface may be behind the material.
-  constexpr double same_place = 0.25;
-  const auto has_slid = [&] {
-    const Vector3& normal = stroke.touch().normal;
-    const Vector3 moved_m = held.state.position_m - stroke.touch().tool_m;
-    return (moved_m - moved_m.dot(normal) * normal).norm() > same_place * stroke.radius_m();
-  };
-  if (!stroke.is_active() || (!pulls && (number != stroke.body() || has_slid()))) {
+  const bool is_elsewhere = !pulls && (number != stroke.body() || has_slid(stroke, held.state.position_m));
+  if (!stroke.is_active() || is_elsewhere) {
     BodyState& touched = s.bodies[static_cast<std::size_t>(number)];
     stroke.begin({number, nearest.u, nearest.v, held.state.position_m, nearest.normal}, touched,
                  choose_local_radius_m(s.scene.tool, touched));
   }
   BodyState& body = s.bodies[static_cast<std::size_t>(stroke.body())];
-  // The material follows until the tool is where the hand is, which takes a little more than the asked depth
-  // while the surface is behind the material. Where the sides of a dent stop the tool, only the touched point
-  // still follows the hand.
-  constexpr double deepest = 1.05;  // times the asked depth
-  const Vector3 lag_vector_m = held.hand.position_m - held.state.position_m;
-  double lag_m = lag_vector_m.norm();
-  bool sides_stop = false;
-  if (!pulls) {
-    const Vector3& normal = stroke.touch().normal;
-    const Vector3 aside_m = nearest.point_m - stroke.point_m(body.lattice);
-    sides_stop = (aside_m - aside_m.dot(normal) * normal).norm() > same_place * stroke.radius_m();
-    const double asked_m = -(held.hand.position_m - stroke.touch().tool_m).dot(normal);
-    lag_m =
-        std::max(0.0, sides_stop ? asked_m - stroke.depth_m()
-                                 : std::min(-lag_vector_m.dot(normal), deepest * asked_m - stroke.depth_m()));
-  }
+  const Vector3 pull_m = held.hand.position_m - held.state.position_m;
+  const PressLag press =
+      pulls ? PressLag{pull_m.norm(), false} : find_press_lag(stroke, held, nearest.point_m, body.lattice);
   const double coupling = constraints.motion().coupling_n_per_m;
   const double resistance_n =
       find_resistance_n(s.scene.tool, body.lattice.material(), stroke.elastic_m(), coupling);
   stroke.relax(tick_s);
   const double largest_m = local_step_cells * static_cast<double>(body.lattice.cell_size_m());
-  const double step_m = std::clamp(local_follow * (lag_m - resistance_n / coupling), 0.0, largest_m);
+  const double step_m = std::clamp(local_follow * (press.lag_m - resistance_n / coupling), 0.0, largest_m);
   if (pulls) {
-    if (step_m > 0.0) stroke.move(body.lattice, step_m / lag_m * lag_vector_m);
+    if (step_m > 0.0) stroke.move(body.lattice, step_m / press.lag_m * pull_m);
   } else {
     constexpr double least_growth = 1.09;
     const double wider_m =
-        find_fitting_radius_m(s.scene.tool, stroke.depth_m(), stroke.radius_m(), sides_stop);
+        find_fitting_radius_m(s.scene.tool, stroke.depth_m(), stroke.radius_m(), press.sides_stop);
     if (wider_m > least_growth * stroke.radius_m()) stroke.widen(body, wider_m);
     stroke.press(body.lattice, step_m, largest_m);
   }
