@@ -46,7 +46,7 @@ Document starting_document(const std::string& name, Surface surface, const Mater
                            std::optional<double> shell_thickness_m = {});
 
 // Halves the elements of the first body's surface that are longer than the tool's radius, exactly, so that
-// the surface follows a stroke from the start; unless it would get more control points than the program adds
+// the surface follows a stroke from the start. Stops before it has more control points than the program adds
 // by itself.
 Status suit_net_to_tool(Scene& scene);
 

@@ -6,7 +6,8 @@
 // s is the distance along the surface from the touched point to the node's nearest point of the surface, and
 // `depth` the node's distance from the surface there. The weight is 0 where s or depth is larger. The
 // material takes its new place as its rest shape (SpringLattice::reform()), so nothing springs back or bends
-// later. The volume may change.
+// later. The volume may change. While a push goes deeper, the radius grows so that the tool fits into the
+// dent; the dent then gets the profile of the wider radius as a whole.
 //
 // s is measured by fast marching over the samples of the surface (Kimmel and Sethian 1998). The thickness is
 // the diameter of the largest sphere that touches the surface at the touched point from inside and contains

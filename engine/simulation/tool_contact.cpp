@@ -170,7 +170,7 @@ void ToolContact::push_nearest(std::span<const BodyState> bodies, const ToolHold
   constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (contacts_[b].collision.found) {
-      add_nearest_pushes(static_cast<int>(b), bodies[b], hold, !is_surface());
+      add_nearest_pushes(static_cast<int>(b), bodies[b], hold);
     } else {
       contacts_[b].points.fill({});
     }
@@ -365,24 +365,22 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
   }
 }
 
-// Adds the push at the nearest point and, if asked, those at the nearest points of earlier ticks.
-void ToolContact::add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold,
-                                     bool with_earlier) {
+// Adds the push at the nearest point and those at the nearest points of earlier ticks. A B-spline tool needs
+// none of the latter, because visit_near() visits all of its locally nearest points.
+void ToolContact::add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold) {
   const SurfaceContact& nearest = contacts_[body].collision.nearest;
   const std::size_t point = track_nearest(body, state, hold.reach_m);
   add_plane_push(body, state,
                  {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)},
                  hold);
-  if (with_earlier) add_earlier_pushes(body, state, point, hold);
+  if (!is_surface()) add_earlier_pushes(body, state, point, hold);
 }
 
 void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
   if (!is_solid_) return add_sphere_pushes(body, state, hold);
-  // A B-spline tool needs no pushes at the nearest points of earlier ticks, because visit_near() visits all
-  // of its locally nearest points.
-  add_nearest_pushes(body, state, hold, !is_surface());
+  add_nearest_pushes(body, state, hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
 

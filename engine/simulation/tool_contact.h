@@ -144,7 +144,7 @@ class ToolContact {
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
-  void add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold, bool with_earlier);
+  void add_nearest_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_pushes_between_samples(int body, const BodyState& state);
   void add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold);
   // Returns the gap between the tool and the point (u, v) of the body's surface, or of the far face of a
