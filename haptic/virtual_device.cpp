@@ -1,5 +1,6 @@
 #include "haptic/virtual_device.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -82,11 +83,13 @@ void PlaybackDevice::set_force(const Vector3&) {}
 void TargetFollower::aim(const HandTarget& target) {
   if (!is_finite(target)) return;
   final_ = target;
-  ticks_left_ = ticks_to_reach;
+  ticks_left_ = std::max(ticks_since_target_, ticks_to_reach.low);
+  ticks_since_target_ = 0;
 }
 
 HandTarget TargetFollower::step() {
   current_.buttons = final_.buttons;
+  ticks_since_target_ = std::min(ticks_since_target_ + 1, ticks_to_reach.high);
   if (ticks_left_ == 0) return current_;
   const double fraction = 1.0 / ticks_left_--;
   current_.pose.position_m += fraction * (final_.pose.position_m - current_.pose.position_m);

@@ -120,12 +120,13 @@ class TargetMailbox {
   TripleBuffer<HandTarget> targets_;
 };
 
-// Interpolates targets that arrive sixty times a second to one target per tick, so that the hand moves
-// smoothly.
+// Interpolates targets that arrive once a frame to one target per tick, so that the hand moves smoothly. A
+// new target is reached after as many ticks as passed between the two targets before it: at a steady frame
+// rate the hand neither waits nor jumps, however slow the drawing is.
 class TargetFollower {
  public:
-  // Number of ticks in which a new target is reached, about one frame.
-  static constexpr int ticks_to_reach = 17;
+  // Number of ticks in which a new target is reached: one frame at 60 and at 15 frames per second.
+  static constexpr Range<int> ticks_to_reach{17, 67};
 
   explicit TargetFollower(const HandTarget& start) : current_(start), final_(start) {}
 
@@ -139,6 +140,7 @@ class TargetFollower {
   HandTarget current_;
   HandTarget final_;
   int ticks_left_ = 0;
+  int ticks_since_target_ = 0;  // at most ticks_to_reach.high
 };
 
 // The virtual device of a live session. Its hand follows targets that another thread sends.

@@ -182,8 +182,8 @@ namespace {
 // Gap between the hovering tool and the surface.
 constexpr double hover_gap_m = 0.001;
 
-// Number of frames until a press reaches its full depth: a quarter of a second at 60 frames per second.
-constexpr int frames_to_depth = 15;
+// Time until a press reaches its full depth.
+constexpr double seconds_to_depth = 0.25;
 constexpr double depth_per_notch_m = 0.001;
 
 // Depth of a press with a tool that attaches to the body, just enough to touch the surface. It does not
@@ -201,18 +201,18 @@ Vector3 project_to_screen_plane(const Ray& ray, const Camera& camera, const Vect
 
 }  // namespace
 
-HandTarget MouseHand::next_target(const HandTarget&, double) {
+HandTarget MouseHand::next_target(const HandTarget&, double elapsed_s) {
   const auto& [pointer, is_stroking, camera, viewport, pick, stroke] = frame_;
   const Ray ray = ray_through(camera, viewport, pointer.position_px);
   if (!is_stroking) must_release_ = false;
   const bool pressed = is_stroking && !must_release_;
   if (pressed && !press_) {
     press_ =
-        Press{hover_m_, inward_, project_to_screen_plane(ray, camera, hover_m_), Vector3::Zero(), 0.0, 0};
+        Press{hover_m_, inward_, project_to_screen_plane(ray, camera, hover_m_), Vector3::Zero(), 0.0, 0.0};
   }
   if (!pressed) press_.reset();
   if (press_) {
-    press(ray, pointer, camera, stroke);
+    press(ray, pointer, camera, stroke, elapsed_s);
   } else {
     hover(ray, camera, *pick, stroke);
   }
@@ -239,12 +239,12 @@ void MouseHand::hover(const Ray& ray, const Camera& camera, const SurfacePick& p
   target_m_ = hover_m_;
 }
 
-void MouseHand::press(const Ray& ray, const Pointer& pointer, const Camera& camera,
-                      const MouseStroke& stroke) {
+void MouseHand::press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke,
+                      double elapsed_s) {
   Press& press = *press_;
-  press.frames = std::min(press.frames + 1, frames_to_depth);
+  press.seconds = std::min(press.seconds + elapsed_s, seconds_to_depth);
   press.depth_m += depth_per_notch_m * pointer.wheel;
-  const double fraction = static_cast<double>(press.frames) / frames_to_depth;
+  const double fraction = press.seconds / seconds_to_depth;
   const double depth_m = stroke.grips ? grip_depth_m : hover_gap_m + stroke.strength_m;
   const Eigen::Matrix3d axes = eye_axes(camera);
   const Vector3 pointer_m = project_to_screen_plane(ray, camera, press.anchor_m);

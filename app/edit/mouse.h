@@ -133,10 +133,11 @@ class MouseHand : public InputSource {
     Vector3 pointer_m;
     Vector3 drag_m = Vector3::Zero();  // so far, parallel to the screen
     double depth_m = 0.0;              // away from the eye
-    int frames = 0;
+    double seconds = 0.0;              // since the start of the press
   };
   void hover(const Ray& ray, const Camera& camera, const SurfacePick& pick, const MouseStroke& stroke);
-  void press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke);
+  void press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke,
+             double elapsed_s);
 
   MouseFrame frame_;
   Vector3 depth_point_m_;

@@ -94,7 +94,7 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   Pointer pointer;
   const auto follow = [&](bool held) {
     hand.set_frame({pointer, held, camera, viewport, &pick, stroke});
-    return hand.next_target({}, 0.0);
+    return hand.next_target({}, 1.0 / 60.0);
   };
   pointer.position_px = *project(camera, viewport, Vector3(0.03, 0.0025, 0));
   const HandTarget hover = follow(false);

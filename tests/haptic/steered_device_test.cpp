@@ -23,13 +23,40 @@ TEST(SteeredDevice, FollowsTheNewestTargetEvenly) {
   device->mailbox()->aim(at_x(0.2, button_main));
   EXPECT_EQ(device->read()->buttons, button_main);
   double before_m = 0.1;
-  for (int tick = 0; tick < TargetFollower::ticks_to_reach; ++tick) {
+  for (int tick = 0; tick < TargetFollower::ticks_to_reach.low; ++tick) {
     const double x_m = device->read()->pose().position_m.x();
     EXPECT_GE(x_m, before_m);
     EXPECT_LT(x_m - before_m, 0.02);
     before_m = x_m;
   }
   EXPECT_NEAR(pose_after(*device, 3000).position_m.x(), 0.2, 1e-9);
+}
+
+TEST(TargetFollower, MovesEvenlyAtASlowFrameRate) {
+  constexpr int ticks_per_frame = 45;
+  constexpr double step_m = 0.0015;
+  TargetFollower follower(at_x(0.0));
+  double before_m = 0.0;
+  for (int frame = 1; frame <= 10; ++frame) {
+    follower.aim(at_x(frame * step_m));
+    for (int tick = 0; tick < ticks_per_frame; ++tick) {
+      const double x_m = follower.step().pose.position_m.x();
+      // The first frame has no frame before it whose time is known.
+      if (frame > 1) {
+        EXPECT_NEAR(x_m - before_m, step_m / ticks_per_frame, 1e-9) << frame << " " << tick;
+      }
+      before_m = x_m;
+    }
+    EXPECT_NEAR(before_m, frame * step_m, 1e-12);
+  }
+}
+
+TEST(TargetFollower, ReachesATargetAfterAPauseWithinAFrame) {
+  TargetFollower follower(at_x(0.0));
+  for (int tick = 0; tick < 1000; ++tick) follower.step();
+  follower.aim(at_x(0.01));
+  for (int tick = 0; tick < TargetFollower::ticks_to_reach.high; ++tick) follower.step();
+  EXPECT_NEAR(follower.step().pose.position_m.x(), 0.01, 1e-12);
 }
 
 TEST(SteeredDevice, FollowsNothingThatIsNotFinite) {
