@@ -570,6 +570,12 @@ BodySelfContact::BodySelfContact(const BodyState& body) {
                                                static_cast<double>(body.lattice.cell_size_m()));
 }
 
+void BodySelfContact::carry_over(const BodySelfContact& before, const BodyMapping& coarser,
+                                 const BodyMapping& finer) {
+  if (!proximity_ || !before.proximity_) return;
+  proximity_->carry_over(*before.proximity_, coarser.current().net, finer.current().net);
+}
+
 bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());

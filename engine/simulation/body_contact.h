@@ -124,6 +124,10 @@ class BodySelfContact {
  public:
   explicit BodySelfContact(const BodyState& body);
 
+  // Takes over what the contact of the body knew before knots were inserted, which changed the body's mapping
+  // from `coarser` to `finer` and no shape. Allocates nothing.
+  void carry_over(const BodySelfContact& before, const BodyMapping& coarser, const BodyMapping& finer);
+
   // Adds a constraint for each point near another part of the body. Returns false if a capacity was exceeded.
   // Allocates nothing.
   bool add_contacts(const IndexedBody& body, BodyContacts& contacts) const;

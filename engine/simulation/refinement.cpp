@@ -86,6 +86,11 @@ void adopt_refinement(Simulation::State& state, PreparedRefinement& prepared) {
   surface = body.mapping().current();
   state.wanted_refinement.reset();
   exchange_contacts(state, prepared.contacts);
+  for (std::size_t b = 0; b < state.self.size(); ++b) {
+    if (state.bodies[b].mesh()) continue;
+    const BodyMapping& now = state.bodies[b].mapping();
+    state.self[b].carry_over(prepared.contacts.self[b], b == index ? prepared.finer : now, now);
+  }
   state.tool.contact.carry_over(prepared.contacts.tool, prepared.body, prepared.new_sample);
   state.mirrored.contact.carry_over(prepared.contacts.mirrored, prepared.body, prepared.new_sample);
 }

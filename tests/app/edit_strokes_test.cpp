@@ -207,7 +207,7 @@ class DraggedHandle : public EditWindow {
 
 TEST_F(DraggedHandle, FollowsTheHandWithoutSwinging) {
   double least_m = HUGE_VAL, most_m = 0.0;
-  for (const double seconds : {0.5, 1.0, 3.0}) {
+  for (const double seconds : {1.0, 0.5, 3.0}) {
     if (seconds != 1.0 && !is_full_run()) continue;
     SCOPED_TRACE(seconds);
     const Drag dragged = drag(seconds);

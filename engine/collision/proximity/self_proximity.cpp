@@ -292,19 +292,32 @@ bool SelfProximity::can_meet(int ring, int other) const {
   return false;
 }
 
-// Returns true if an earlier search found nothing near and no two parts can have come within the margin
-// since. A surface moves no farther than its control points, so two parts approach each other by at most
-// twice the farthest move.
-bool SelfProximity::is_still_clear(const ControlNet& net) const {
-  if (!clear_) return false;
-  const double most = 0.5 * lead_cells * cell_m_;
+// Returns a bound of how far a point of the surface has moved since the search that found nothing near. A
+// surface moves no farther than its control points.
+double SelfProximity::moved_since_clear_m(const ControlNet& net) const {
+  SPOONBILL_ASSERT(net.size() == clear_net_.size());
   double farthest = 0.0;
   for (std::size_t k = 0; k < net.size(); ++k) {
     const double x = net.x[k] - clear_net_.x[k], y = net.y[k] - clear_net_.y[k],
                  z = net.z[k] - clear_net_.z[k], square = x * x + y * y + z * z;
     farthest = farthest < square ? square : farthest;
   }
-  return farthest < most * most;
+  return moved_before_m_ + std::sqrt(farthest);
+}
+
+// Returns true if an earlier search found nothing near and no two parts can have come within the margin
+// since. Two parts approach each other by at most twice the farthest move.
+bool SelfProximity::is_still_clear(const ControlNet& net) const {
+  return clear_ && moved_since_clear_m(net) < 0.5 * lead_cells * cell_m_;
+}
+
+void SelfProximity::carry_over(const SelfProximity& before, const ControlNet& coarse,
+                               const ControlNet& fine) {
+  SPOONBILL_ASSERT(fine.size() == clear_net_.size());
+  clear_ = before.clear_;
+  if (!clear_) return;
+  moved_before_m_ = before.moved_since_clear_m(coarse);
+  clear_net_ = fine;
 }
 
 void SelfProximity::find(const Surface& surface, double margin_m) {
@@ -318,7 +331,10 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
     missing_elements_ = missing;
-    if (clear_) clear_net_ = surface.net;
+    if (clear_) {
+      clear_net_ = surface.net;
+      moved_before_m_ = 0.0;
+    }
     return;
   }
   clear_ = false;

@@ -113,6 +113,11 @@ class SelfProximity {
   // must be the same in each call. A call takes almost no time while the body is not folded.
   void find(const Surface& surface, double margin_m);
 
+  // Takes over what `before` knows about a surface of the same shape with fewer knots, so that the next
+  // find() need not search where that of `before` would not. `coarse` is the net that `before` would search
+  // next, and `fine` the same shape with the knots of this search. Allocates nothing.
+  void carry_over(const SelfProximity& before, const ControlNet& coarse, const ControlNet& fine);
+
   // Removes the points for which `keep` returns false.
   template <class Keep>
   void keep_if(const Keep& keep) {
@@ -131,6 +136,7 @@ class SelfProximity {
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
  private:
+  double moved_since_clear_m(const ControlNet& net) const;
   bool is_still_clear(const ControlNet& net) const;
   std::vector<std::array<int, 2>> find_rings_that_can_meet() const;
   bool can_meet(int ring, int other) const;
@@ -164,8 +170,10 @@ class SelfProximity {
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
   // Control net of the last search in which every two elements were farther apart than the margin plus
-  // lead_cells cells. Valid while clear_ is true.
+  // lead_cells cells, or of a carry_over() after it, until which no point had moved by more than
+  // moved_before_m_. Valid while clear_ is true.
   ControlNet clear_net_;
+  double moved_before_m_ = 0.0;
   bool clear_ = false;
   bool missing_elements_ = false;
 };

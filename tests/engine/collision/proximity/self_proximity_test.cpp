@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "engine/bspline/evaluate.h"
+#include "engine/bspline/halve_elements.h"
 
 namespace spoonbill {
 namespace {
@@ -99,6 +102,41 @@ TEST(SelfProximity, OfARingPressedTogetherIsAlikeOverTheSeam) {
     ASSERT_EQ(over.size(), beside.size()) << gap_m;
     for (std::size_t k = 0; k < over.size(); ++k) EXPECT_NEAR(over[k], beside[k], 1e-9) << gap_m;
   }
+}
+
+Surface with_halved_elements(Surface surface) {
+  const int control_points = static_cast<int>(surface.net.size());
+  return halve_long_elements(std::move(surface), 1e-6, 4 * control_points, 1000).value();
+}
+
+// Smallest gap between the walls of the hole, in tenths of a millimetre, at which a search with nothing known
+// finds nothing near.
+double find_clear_gap_m(SelfProximity& search, const std::function<Surface(double)>& shape) {
+  for (double gap_m = proximity_margin_m;; gap_m += 1e-4) {
+    search.find(shape(gap_m), proximity_margin_m);
+    if (search.is_clear()) return gap_m;
+  }
+}
+
+// The walls of the hole approach each other by almost as much as a search allows for, then the knots are
+// refined, then the walls come too near.
+TEST(SelfProximity, OfARefinedSurfaceKnowsHowFarItHasMovedSinceTheLastSearch) {
+  const auto shape = [](double gap_m) { return torus(0, (torus_tube_m + 0.5 * gap_m) / torus_ring_m); };
+  const auto refined = [&](double gap_m) { return with_halved_elements(shape(gap_m)); };
+  const Surface rest = torus(0), finer_rest = with_halved_elements(rest);
+  const NestedGrid nested = nested_grid_of(rest), finer_nested = nested_grid_of(finer_rest);
+  SelfProximity coarse(nested, rest, cell_m), finer(finer_nested, finer_rest, cell_m),
+      anew(finer_nested, finer_rest, cell_m);
+  const double apart_m = find_clear_gap_m(coarse, shape), near_m = apart_m - 0.9 * cell_m;
+  const double too_near_m = apart_m - 1.1 * cell_m;
+  ASSERT_LT(too_near_m, find_clear_gap_m(anew, refined));
+
+  finer.carry_over(coarse, shape(near_m).net, refined(near_m).net);
+  EXPECT_TRUE(finer.is_clear());
+  finer.find(refined(near_m), proximity_margin_m);
+  EXPECT_TRUE(finer.is_clear());
+  finer.find(refined(too_near_m), proximity_margin_m);
+  EXPECT_FALSE(finer.is_clear());
 }
 
 }  // namespace
