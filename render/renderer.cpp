@@ -99,7 +99,8 @@ class Renderer::Parts {
     const FrameView scene_view = make_scene_view(view, target_->scene_size());
     const double detail = settings.detail * pixels_per_metre(settings.camera, view.viewport);
     if (Status bodies = bodies_.update(
-            snapshot, detail, {settings.keep_level, settings.occlusion, settings.overlays.fixed_nodes});
+            snapshot, detail,
+            {settings.keep_level, settings.occlusion, settings.overlays.fixed_nodes, settings.overlays.tool});
         !bodies) {
       return bodies;
     }

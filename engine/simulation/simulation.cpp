@@ -404,9 +404,11 @@ namespace {
 
 void write_local_reach(const Simulation::State& s, ToolSnapshot& tool) {
   tool.local_radius_m = 0.0;
-  if (!s.scene.tool.is_local()) return;
+  tool.is_local = s.scene.tool.is_local();
+  if (!tool.is_local) return;
   const LocalStroke& stroke = s.tool.contact.local_stroke();
   if (stroke.is_active()) {
+    tool.local_body = stroke.body();
     tool.local_point_m = stroke.point_m(s.bodies[static_cast<std::size_t>(stroke.body())].lattice);
     tool.local_radius_m = stroke.radius_m();
     return;
@@ -414,6 +416,7 @@ void write_local_reach(const Simulation::State& s, ToolSnapshot& tool) {
   const int body = s.tool.contact.deepest_body();
   const CollisionResult& collision = s.tool.contact.collision(body);
   if (!collision.found) return;
+  tool.local_body = body;
   tool.local_point_m = collision.nearest.point_m;
   tool.local_radius_m = choose_local_radius_m(s.scene.tool, s.bodies[static_cast<std::size_t>(body)]);
 }

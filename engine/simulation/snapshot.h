@@ -58,8 +58,10 @@ struct ToolSnapshot {
   Pose device;  // pose of the hand
   Pose proxy;   // pose at which the material stops the tool; the tool is drawn there
   bool button = false;
-  // Centre and radius of a stroke of local reach: the touched point, or the nearest point of a tool that
-  // is close, and the radius along the surface; 0 for none.
+  bool is_local = false;  // whether strokes have local reach
+  // Body, centre and radius of a stroke of local reach: the touched point, or the nearest point of a tool
+  // that is close, and the radius along the surface; 0 for none.
+  int local_body = 0;
   Vector3 local_point_m = Vector3::Zero();
   double local_radius_m = 0.0;
 };

@@ -197,4 +197,14 @@ void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>
   }
 }
 
+void append_reach_ring(const ReachRing& ring, std::vector<OverlayLine>& lines) {
+  constexpr float width_px = 2.0f;
+  const auto& ends_m = ring.ends_m();
+  for (std::size_t k = 0; k < ends_m.size(); ++k) {
+    const auto &from = ends_m[k], &to = ends_m[(k + 1) % ends_m.size()];
+    if (!from || !to) continue;
+    lines.push_back({from->cast<float>(), to->cast<float>(), palette::tool, palette::tool, width_px});
+  }
+}
+
 }  // namespace spoonbill

@@ -17,6 +17,12 @@ std::string newtons_text(double newtons) {
   return text.data();
 }
 
+std::string reach_text(double radius_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "local reach, %.1f mm", 1e3 * radius_m);
+  return radius_m > 0.0 ? text.data() : "local reach";
+}
+
 std::string count_text(const char* what, std::size_t count) {
   return what + (" " + std::to_string(count));
 }
@@ -140,6 +146,8 @@ std::vector<Label> make_legend(const Snapshot& snapshot, const ViewSettings& set
   if (on.tool) {
     add(std::string(name_of(snapshot.tool.kind)) + " tool, " + name_of(snapshot.tool.action),
         LabelSymbol::sphere, palette::tool);
+    if (snapshot.tool.is_local)
+      add(reach_text(snapshot.tool.local_radius_m), LabelSymbol::ring, palette::tool);
   }
   if (force_arrow(snapshot, settings)) add("force on the hand", LabelSymbol::arrow, palette::force);
   if (on.touched_nodes && touched > 0) {
@@ -181,6 +189,9 @@ void draw_symbol(ImDrawList& list, LabelSymbol symbol, Colour colour, ImVec2 c, 
       break;
     case LabelSymbol::disc:
       list.AddCircleFilled(c, 0.9f * r, ink);
+      break;
+    case LabelSymbol::ring:
+      list.AddCircle(c, 0.9f * r, ink, 0, 0.3f * r);
       break;
     case LabelSymbol::diamond:
       list.AddNgonFilled(c, r, ink, 4);

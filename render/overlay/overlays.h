@@ -13,6 +13,7 @@
 #include "engine/simulation/snapshot.h"
 #include "render/camera.h"
 #include "render/colour.h"
+#include "render/tessellation/reach_ring.h"
 #include "render/view_settings.h"
 
 struct ImDrawList;
@@ -94,6 +95,9 @@ void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& ey
 // diamond at each control point.
 void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>& lines,
                         std::vector<OverlayMark>& marks);
+
+// Appends the ring of a local stroke, without the parts beyond the edge of an open surface.
+void append_reach_ring(const ReachRing& ring, std::vector<OverlayLine>& lines);
 
 // Overlays of the fixing planes and of the plane of symmetry, defined in plane_overlays.cpp.
 
@@ -189,7 +193,7 @@ double round_length_below(double length);
 
 // Labels and legend, defined in labels.cpp.
 
-enum class LabelSymbol { none, square, disc, diamond, line, arrow, sphere, plane };
+enum class LabelSymbol { none, square, disc, ring, diamond, line, arrow, sphere, plane };
 
 struct Label {
   std::string text;

@@ -52,6 +52,7 @@ constexpr std::size_t live_occlusion_parts = 4;
 Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, const MeshChoice& choice) {
   surfaces_.resize(snapshot.bodies.size());
   tints_.resize(snapshot.bodies.size());
+  rings_.resize(snapshot.bodies.size());
   while (buffers_.size() > surfaces_.size()) buffers_.pop_back();
   while (buffers_.size() < surfaces_.size()) buffers_.emplace_back(*gl_);
   bounds_ = {};
@@ -78,6 +79,11 @@ Status BodyMeshes::update(const Snapshot& snapshot, double pixels_per_metre, con
     const std::size_t count = surfaces_[i].vertex_count();
     if (!choice.is_occluded) open_.assign(count);
     untinted_.assign(count, 0.0f);
+    const ToolSnapshot& tool = snapshot.tool;
+    rings_[i].clear();
+    if (choice.shows_reach && tool.local_radius_m > 0.0 && tool.local_body == static_cast<int>(i)) {
+      rings_[i].update(surfaces_[i], tool.local_point_m, tool.local_radius_m);
+    }
     if (choice.shows_fixed) tints_[i].update(snapshot.bodies[i].lattice, surfaces_[i], choice.keeps_level);
     buffers_[i].upload(surfaces_[i], choice.is_occluded ? occlusion_.visibility(i) : open_,
                        choice.shows_fixed ? tints_[i].weights() : untinted_);

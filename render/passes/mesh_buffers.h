@@ -11,6 +11,7 @@
 #include "render/gl/pipeline.h"
 #include "render/overlay/fixed_tint.h"
 #include "render/tessellation/ambient_occlusion.h"
+#include "render/tessellation/reach_ring.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "render/tessellation/tool_mesh.h"
 
@@ -49,6 +50,7 @@ struct MeshChoice {
   bool keeps_level = true;
   bool is_occluded = true;   // computes visibility; otherwise it is 1
   bool shows_fixed = false;  // computes the tint of the fixed part; otherwise it is 0
+  bool shows_reach = false;  // finds the ring of a local stroke
 };
 
 // The surfaces of a snapshot, tessellated for the screen.
@@ -61,6 +63,8 @@ class BodyMeshes {
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
   const std::vector<SurfaceBuffers>& buffers() const { return buffers_; }
+  // The ring of a local stroke on each surface. Those without one have no ends.
+  const std::vector<ReachRing>& rings() const { return rings_; }
   const Box& bounds() const { return bounds_; }
 
  private:
@@ -69,6 +73,7 @@ class BodyMeshes {
   std::vector<SurfaceBuffers> buffers_;
   AmbientOcclusion occlusion_;
   std::vector<FixedTint> tints_;
+  std::vector<ReachRing> rings_;
   BothSides open_;               // visibility without occlusion
   std::vector<float> untinted_;  // tint without a fixed part
   Box bounds_;

@@ -53,13 +53,6 @@ ToolSphere tool_sphere(const FrameView& view, const Snapshot& snapshot, const Vi
   return {centre, pixels_at(view, centre, smallest_tool_px)};
 }
 
-ToolSphere tool_with_ring(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
-  ToolSphere tool = tool_sphere(view, snapshot, settings);
-  if (!settings.overlays.tool) return tool;
-  tool.ring_m << snapshot.tool.local_point_m.cast<float>(), static_cast<float>(snapshot.tool.local_radius_m);
-  return tool;
-}
-
 SurfaceDrawing choose_drawing(const BodySnapshot& body, const ViewSettings& settings) {
   SurfaceDrawing drawing;
   drawing.look = find_material_look(body.material.name);
@@ -149,7 +142,7 @@ void ScenePasses::draw(const FrameView& view, const FrameView& scene_view, const
 
 void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings,
                              const BodyMeshes& bodies) {
-  const ToolSphere tool = tool_with_ring(view, snapshot, settings);
+  const ToolSphere tool = tool_sphere(view, snapshot, settings);
   const ShadowPass* shadow = settings.shadow ? &passes_.shadow : nullptr;
   const auto draw_bodies = [&](bool are_clear) {
     for (std::size_t b = 0; b < bodies.buffers().size(); ++b) {
@@ -166,6 +159,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   passes_.line.draw(view, cells.far, 0.0f);
   draw_bodies(true);
   passes_.line.draw(view, cells.near, lift_m(view, snapshot));
+  draw_rings(view, snapshot, bodies);
   draw_overlays(view, snapshot, settings);
   if (settings.overlays.fixing_planes) draw_planes(view, snapshot, bodies.bounds());
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
@@ -200,6 +194,12 @@ void ScenePasses::draw_force(const FrameView& view, const Snapshot& snapshot,
   const Eigen::Vector3f start = arrow->start_m.cast<float>();
   passes_.solid.draw_arrow(view, start, arrow->tip_m.cast<float>(), pixels_at(view, start, arrow_width_px),
                            palette::force);
+}
+
+void ScenePasses::draw_rings(const FrameView& view, const Snapshot& snapshot, const BodyMeshes& bodies) {
+  lines_.clear();
+  for (const ReachRing& ring : bodies.rings()) append_reach_ring(ring, lines_);
+  passes_.line.draw(view, lines_, lift_m(view, snapshot));
 }
 
 void ScenePasses::draw_overlays(const FrameView& view, const Snapshot& snapshot,

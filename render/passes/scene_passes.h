@@ -73,6 +73,7 @@ class ScenePasses {
   void draw_ground(const FrameView& view, const ViewSettings& settings);
   void draw_scale_bar(const FrameView& view, const ViewSettings& settings);
   void draw_force(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;
+  void draw_rings(const FrameView& view, const Snapshot& snapshot, const BodyMeshes& bodies);
   void draw_overlays(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings);
   void draw_planes(const FrameView& view, const Snapshot& snapshot, const Box& body);
   void draw_symmetry(const FrameView& view, const Snapshot& snapshot, const Box& body);

@@ -201,7 +201,6 @@ float quantised_size(float size) {
 void set_tool_uniforms(const Program& program, const ToolSphere& tool) {
   program.set("tool_centre", tool.centre_m);
   program.set("tool_radius", tool.radius_m);
-  program.set("tool_ring", tool.ring_m);
 }
 
 Result<ShadowPass> ShadowPass::make(const GlFunctions& gl) {

@@ -41,11 +41,9 @@ ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const
 struct ToolSphere {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   float radius_m = 0.0f;  // 0 without a tool
-  // Ring on the surface where a stroke of local reach ends: centre and radius; a radius of 0 draws none.
-  Eigen::Vector4f ring_m = Eigen::Vector4f::Zero();
 };
 
-// Sets the uniforms tool_centre, tool_radius and tool_ring.
+// Sets the uniforms tool_centre and tool_radius.
 void set_tool_uniforms(const Program& program, const ToolSphere& tool);
 
 class ShadowPass {

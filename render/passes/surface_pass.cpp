@@ -54,8 +54,6 @@ uniform float texel_m;
 uniform int shadowed;
 uniform int two_sided;
 uniform vec4 fixed_tint;
-uniform vec4 tool_ring;
-uniform vec3 ring_colour;
 uniform vec3 base_colour;
 uniform float roughness;
 uniform float metalness;
@@ -90,12 +88,6 @@ void main() {
   }
   float tinted = fixed_tint.a * fixed_part;
   vec3 base = mix(skin.base, fixed_tint.rgb, tinted);
-  if (tool_ring.w > 0.0) {
-    float off = length(position - tool_ring.xyz) - tool_ring.w;
-    float ring = 0.85 * (1.0 - smoothstep(0.6, 1.4, abs(off) / fwidth(off)));
-    base = mix(base, ring_colour, ring);
-    tinted = max(tinted, ring);
-  }
   Look look = Look(base, roughness, metalness * (1.0 - tinted), translucency);
   Lit lit = studio_light(look, position, skin.normal, key, sky);
   float grazing = 1.0 - clamp(abs(dot(n, normalize(eye - position))), 0.0, 1.0);
@@ -134,9 +126,6 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   const float opacity = drawing.shows_fixed ? static_cast<float>(fixed.a) / 255.0f : 0.0f;
   program.set("fixed_tint", Eigen::Vector4f(srgb8_to_linear(fixed.r), srgb8_to_linear(fixed.g),
                                             srgb8_to_linear(fixed.b), opacity));
-  constexpr Colour ring = palette::tool;
-  program.set("ring_colour",
-              Eigen::Vector3f(srgb8_to_linear(ring.r), srgb8_to_linear(ring.g), srgb8_to_linear(ring.b)));
   program.set("base_colour", look.base_colour);
   program.set("roughness", look.roughness);
   program.set("metalness", look.metalness);

@@ -47,6 +47,12 @@ TEST(Labels, TheLegendSaysWhatIsOnAndThere) {
   EXPECT_TRUE(has_line(labels.legend, "touched nodes"));
   EXPECT_TRUE(has_line(labels.legend, "sphere tool, push"));
   EXPECT_FALSE(has_line(labels.legend, "control net"));
+  EXPECT_FALSE(has_line(labels.legend, "local reach"));
+
+  snapshot.tool.is_local = true;
+  EXPECT_TRUE(has_line(overlay_labels(snapshot, settings, 1280, 720).legend, "local reach"));
+  snapshot.tool.local_radius_m = 0.012;
+  EXPECT_TRUE(has_line(overlay_labels(snapshot, settings, 1280, 720).legend, "local reach, 12.0 mm"));
 
   settings.overlays.lattice = true;
   EXPECT_TRUE(has_line(overlay_labels(snapshot, settings, 1280, 720).legend, "fixed nodes 640"));

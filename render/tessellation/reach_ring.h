@@ -1,0 +1,53 @@
+// The ring that shows where a stroke of local reach ends, on a tessellated surface. Does not use GL.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "render/tessellation/tessellated_surface.h"
+
+namespace spoonbill {
+
+// Finds the points at a distance along a surface from one of its points. From this point, straightest lines
+// (Polthier and Schmies 1998) lead over the triangles in all directions; the ring connects their ends. The
+// shape of the triangles does not matter. One owner, one thread.
+class ReachRing {
+ public:
+  static constexpr int directions = 96;
+
+  // Finds the ring of this radius around the point of the surface nearest to `centre_m`. A line that leaves
+  // an open surface has no end.
+  void update(const TessellatedSurface& surface, const Vector3& centre_m, double radius_m);
+  void clear() { ends_m_.fill(std::nullopt); }
+
+  // Returns the ends of the lines, in order around the point.
+  const std::array<std::optional<Vector3>, directions>& ends_m() const { return ends_m_; }
+
+ private:
+  // A place on a triangle, which is given by the number of its first corner in indices().
+  struct Place {
+    std::uint32_t triangle = 0;
+    Vector3 point_m = Vector3::Zero();
+  };
+  // A line that continues in a triangle over the side that begins at a corner, 0 to 2.
+  struct Entry {
+    std::uint32_t triangle = 0;
+    int side = 0;
+  };
+  void connect(const TessellatedSurface& surface);
+  std::optional<Place> find_place(const TessellatedSurface& surface, const Vector3& point_m) const;
+  std::optional<Entry> cross(const std::vector<std::uint32_t>& corners, std::uint32_t triangle,
+                             int side) const;
+  std::optional<Vector3> walk(const TessellatedSurface& surface, const Place& start, Vector3 direction,
+                              double length_m) const;
+
+  std::uint64_t topology_version_ = 0;
+  // The triangles around vertex v are triangles_[starts_[v]] up to triangles_[starts_[v + 1]].
+  std::vector<std::uint32_t> starts_, triangles_;
+  std::array<std::optional<Vector3>, directions> ends_m_;
+};
+
+}  // namespace spoonbill
