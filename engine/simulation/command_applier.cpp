@@ -9,27 +9,6 @@ std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector
   return body.rigid ? std::vector<FixingPlane>() : planes;
 }
 
-ContactScene find_contact_scene(const Scene& scene) {
-  return {scene.bodies.size(), scene.ground.has_value()};
-}
-
-void exchange_contacts(Simulation::State& state, SceneContacts& contacts) {
-  std::swap(state.tool.contact, contacts.tool);
-  std::swap(state.mirrored.contact, contacts.mirrored);
-  std::swap(state.between, contacts.between);
-  state.pairs.swap(contacts.pairs);
-  state.self.swap(contacts.self);
-  std::swap(state.searched, contacts.searched);
-  std::swap(state.ground_contact, contacts.ground);
-  state.rigid_ground.swap(contacts.rigid_ground);
-  state.sampled_ground.swap(contacts.sampled_ground);
-}
-
-void make_contacts(Simulation::State& state) {
-  SceneContacts made = make_scene_contacts(state.bodies, find_contact_scene(state.scene), state.model);
-  exchange_contacts(state, made);
-}
-
 void carry_motion(const BodyState& state, Body& body) {
   if (!body.motion || !state.rigid) return;
   const Pose& pose = state.rigid->motion().end;

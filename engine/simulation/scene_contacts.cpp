@@ -3,6 +3,8 @@
 #include <span>
 #include <utility>
 
+#include "engine/simulation/simulation_state.h"
+
 namespace spoonbill {
 namespace {
 
@@ -33,6 +35,27 @@ SceneContacts make_scene_contacts(const std::vector<BodyState>& bodies, const Co
           BodyGroundContact(scene_bodies.first(scene.has_ground ? scene.body_count : 0)),
           {scene_bodies.begin(), scene_bodies.end()},
           {scene_bodies.begin(), scene_bodies.end()}};
+}
+
+ContactScene find_contact_scene(const Scene& scene) {
+  return {scene.bodies.size(), scene.ground.has_value()};
+}
+
+void exchange_contacts(Simulation::State& state, SceneContacts& contacts) {
+  std::swap(state.tool.contact, contacts.tool);
+  std::swap(state.mirrored.contact, contacts.mirrored);
+  std::swap(state.between, contacts.between);
+  state.pairs.swap(contacts.pairs);
+  state.self.swap(contacts.self);
+  std::swap(state.searched, contacts.searched);
+  std::swap(state.ground_contact, contacts.ground);
+  state.rigid_ground.swap(contacts.rigid_ground);
+  state.sampled_ground.swap(contacts.sampled_ground);
+}
+
+void make_contacts(Simulation::State& state) {
+  SceneContacts made = make_scene_contacts(state.bodies, find_contact_scene(state.scene), state.model);
+  exchange_contacts(state, made);
 }
 
 }  // namespace spoonbill
