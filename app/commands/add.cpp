@@ -19,6 +19,7 @@
 #include "app/report/quantity_text.h"
 #include "engine/exchange/cad_model.h"
 #include "engine/exchange/file_format.h"
+#include "engine/scene/place_body.h"
 
 namespace spoonbill {
 namespace {

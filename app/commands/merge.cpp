@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +24,7 @@
 #include "engine/inspection/curvature.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/inspection/surface_check.h"
+#include "engine/merging/bring.h"
 #include "engine/merging/intersection_merge.h"
 #include "engine/merging/trimmed_patch.h"
 
@@ -46,6 +49,7 @@ struct MergeOptions {
   MergeRequest request;
   std::optional<int> continuity;  // empty if --continuity is not given
   bool crossing = false;
+  bool brings = false;
   double fillet_m = 0.0;
   bool json = false;
 };
@@ -56,8 +60,9 @@ struct MergeParts {
   // there is only one patch, it also gets the view.
   std::optional<Document> first;
   std::vector<Body> bodies;
-  std::vector<Surface> patches;  // surfaces of the bodies, resampled so that they have no trims
-  double untrimmed_m = 0.0;      // largest deviation that removing the trims caused
+  std::vector<Surface> patches;      // surfaces of the bodies, resampled so that they have no trims
+  std::vector<BroughtPart> brought;  // how patches after the first were moved; empty without --bring
+  double untrimmed_m = 0.0;          // largest deviation that removing the trims caused
   std::vector<std::string> notes;
 };
 
@@ -243,6 +248,34 @@ void add_tight_fillet(const Surface& merged, const Joint& corner, const std::str
                                   : "; a smaller tolerance brings it closer to the request"));
 }
 
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+std::string turn_text(double turn_rad) {
+  return number_text(std::round(turn_rad * degrees_per_radian * 100.0) / 100.0) + " deg";
+}
+
+void add_brought_parts(FactSheet& facts, const MergeParts& parts) {
+  Json list = Json::array();
+  for (const BroughtPart& brought : parts.brought) {
+    const auto& [to, from, motion] = brought;
+    const auto patch = static_cast<std::size_t>(from.patch);
+    const Eigen::AngleAxisd turn(motion.pose.orientation);
+    facts.add("Moved",
+              "\"" + parts.bodies[patch].name + "\" by " + short_length_text(motion.moved_m.norm()) +
+                  ", turned by " + turn_text(turn.angle()) + ", of which " + turn_text(motion.roll_rad) +
+                  " about the joint, so that " + edge_text(from) + " meets " + edge_text(to),
+              "", nullptr);
+    list.push_back({{"patch", from.patch + 1},
+                    {"edge", edge_text(from)},
+                    {"meets", edge_text(to)},
+                    {"edge_moved_mm", millimetres_json(motion.moved_m)},
+                    {"turned_deg", turn.angle() * degrees_per_radian},
+                    {"axis", {turn.axis().x(), turn.axis().y(), turn.axis().z()}},
+                    {"roll_deg", motion.roll_rad * degrees_per_radian}});
+  }
+  if (!list.empty()) facts.add("", "", "moved", list);
+}
+
 void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
                      std::vector<std::string>& notes) {
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, notes);
@@ -269,6 +302,7 @@ void report_merge(const MergeOptions& options, const MergeParts& parts, const Me
   Json names = Json::array();
   for (const Body& patch : parts.bodies) names.push_back(patch.name);
   facts.add("Patches", std::to_string(parts.bodies.size()), "patches", names);
+  add_brought_parts(facts, parts);
   const KnotVector &u = merged.surface.u, &v = merged.surface.v;
   facts.add("Control points",
             std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count()) +
@@ -360,6 +394,14 @@ Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const Merge
   return outcome;
 }
 
+Status bring_if_wanted(const MergeOptions& options, MergeParts& parts) {
+  if (!options.brings) return {};
+  auto brought = bring_parts(parts.patches, options.request.chosen);
+  if (!brought) return brought.error().in("merge");
+  parts.brought = std::move(brought).value();
+  return {};
+}
+
 Result<MergeOutcome> merge_parts(const MergeParts& parts, const MergeOptions& options,
                                  const Progress& progress) {
   MergeRequest request = options.request;
@@ -378,6 +420,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
   if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
   auto parts = read_parts(options);
   if (!parts) return parts.error();
+  if (Status brought = bring_if_wanted(options, parts.value()); !brought) return brought;
   auto outcome = CancellableJob(console, "Merging", options.out).run([&](const Progress& progress) {
     return merge_parts(parts.value(), options, progress);
   });
@@ -456,6 +499,10 @@ CommandEntry add_merge(OptionSet root) {
       [options](double turns) { options->request.join.twist = turns; },
       "Rotation of each ring relative to the ring before, measured from the best match, in turns; default: "
       "0, range: -1 to 1");
+  CommandOption bring = parser.add_flag(
+      "--bring", options->brings,
+      "Move each patch after the first to where its edge meets one of a patch before it, in position, "
+      "direction and roll: the edges of --edges, or the nearest ends of tubes");
   CommandOption crossing = parser.add_flag("--intersect", options->crossing,
                                            "Merge patches that cross: each keeps the part outside the other");
   add_parsed_option(
@@ -474,6 +521,7 @@ CommandEntry add_merge(OptionSet root) {
     }
     return {};
   });
+  crossing.exclude(bring);
   crossing.exclude(parser.option("--edges"));
   crossing.exclude(parser.option("--blend"));
   crossing.exclude(twist);

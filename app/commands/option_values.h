@@ -32,6 +32,15 @@ Result<Extent> parse_extent(std::string_view text, Range<int> range, const char*
 // orientation as a quaternion w,x,y,z of any length but 0.
 Result<Pose> parse_pose(std::string_view text);
 
+// Parses "10mm,0,-5mm": x, y and z within position_range_m, each with a unit unless it is 0.
+Result<Vector3> parse_position(std::string_view text);
+
+// Parses "x", "y", "z" or a direction of any length but 0, such as "0,1,-1". Returns a unit vector.
+Result<Vector3> parse_axis(std::string_view text);
+
+// Parses a factor within the range, or one each for x, y and z: "1.2", "1.2,1,1".
+Result<Vector3> parse_scale(std::string_view text, Range<double> range);
+
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 

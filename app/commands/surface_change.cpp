@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/commands/option_values.h"
+#include "app/commands/placing.h"
 #include "engine/base/text.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/reparameterise.h"
@@ -318,9 +319,9 @@ const std::vector<Change>& all_changes() {
 }  // namespace
 
 Result<ChangeRequest> parse_change(const std::vector<std::string>& words) {
-  std::string known;
+  std::string known = placing_names();
   for (const Change& change : all_changes()) {
-    known += (known.empty() ? "" : ", ") + std::string(change.name);
+    known += ", " + std::string(change.name);
     if (words.empty() || words[0] != change.name) continue;
     if (words.size() < 1 + change.fewest_words || words.size() > 1 + change.words.size()) {
       return Error{ErrorCode::malformed,

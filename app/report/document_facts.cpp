@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "app/report/quantity_text.h"
 #include "engine/base/text.h"
@@ -89,10 +90,6 @@ std::string shell_text(const Body& body) {
   return body.shell_thickness_m ? ", a shell of " + length_text(*body.shell_thickness_m) : "";
 }
 
-Json size_json(const Vector3& size_m) {
-  return {1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()};
-}
-
 std::string material_text(const Material& material) {
   return material.name + ": E " + modulus_text(material.youngs_modulus_pa) + ", Poisson " +
          number_text(material.poissons_ratio) + ", density " + density_text(material.density_kg_per_m3);
@@ -142,7 +139,7 @@ void add_shape_facts(FactSheet& facts, const Body& body, bool detailed, Json& js
 // Adds the lines of a body and returns its JSON.
 Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body, const Vector3& size_m,
                     bool detailed) {
-  Json json = {{"name", body.name}, {"size_mm", size_json(size_m)}};
+  Json json = {{"name", body.name}, {"size_mm", millimetres_json(size_m)}};
   json["material"] = material_to_json(body.material);
   if (body.shell_thickness_m) json["shell_thickness_m"] = *body.shell_thickness_m;
   std::string text = body.name + shell_text(body);
@@ -241,6 +238,42 @@ Json add_body_cells(FactSheet& facts, const std::string& suffix, const LatticeMe
   return json;
 }
 
+// Returns how far the surface reaches in a direction. From the farthest sample, steps that halve lead to the
+// farthest point near it.
+double find_farthest(const Surface& surface, const Vector3& direction) {
+  const auto reach = [&](double u, double v) { return direction.dot(position(surface, u, v)); };
+  double farthest = -std::numeric_limits<double>::infinity(), best_u = 0.0, best_v = 0.0;
+  const auto offer = [&](double u, double v) {
+    const double there = reach(u, v);
+    if (!(there > farthest)) return false;
+    farthest = there;
+    best_u = u;
+    best_v = v;
+    return true;
+  };
+  const auto v_parameters = uniform_parameters(surface.v, extent_samples);
+  for (const double u : uniform_parameters(surface.u, extent_samples)) {
+    for (const double v : v_parameters) offer(u, v);
+  }
+  constexpr int halvings = 24, most_steps = 400;
+  double step_u = surface.u.domain_length() / extent_samples,
+         step_v = surface.v.domain_length() / extent_samples;
+  for (int k = 0, steps = 0; k < halvings && steps < most_steps; ++steps) {
+    const double u = best_u, v = best_v;
+    bool is_better = false;
+    for (const double to_u : {u - step_u, u, u + step_u}) {
+      for (const double to_v : {v - step_v, v, v + step_v}) {
+        is_better |= offer(surface.u.into_domain(to_u), surface.v.into_domain(to_v));
+      }
+    }
+    if (is_better) continue;
+    step_u *= 0.5;
+    step_v *= 0.5;
+    ++k;
+  }
+  return farthest;
+}
+
 }  // namespace
 
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
@@ -251,9 +284,9 @@ Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
     if (area && grid) return extent_within(surface, grid.value(), area.value());
   }
   Box box;
-  const auto v_parameters = uniform_parameters(surface.v, extent_samples);
-  for (const double u : uniform_parameters(surface.u, extent_samples)) {
-    for (const double v : v_parameters) box.include(position(surface, u, v));
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = -find_farthest(surface, -Vector3::Unit(axis));
+    box.high[axis] = find_farthest(surface, Vector3::Unit(axis));
   }
   return box;
 }
@@ -287,7 +320,7 @@ void add_document_facts(FactSheet& facts, const Document& document) {
 
 void add_size_fact(FactSheet& facts, const Box& extent) {
   const Vector3 size_m = extent.high - extent.low;
-  facts.add("Size", size_text(size_m), "size_mm", size_json(size_m));
+  facts.add("Size", size_text(size_m), "size_mm", millimetres_json(size_m));
 }
 
 void add_material_facts(FactSheet& facts, const Material& material) {
@@ -316,7 +349,7 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
     const std::string number = surfaces.size() > 1 ? " " + std::to_string(bodies.size() + 1) : "";
     facts.add("Body" + number, part.name + ": " + text, "", nullptr);
     bodies.push_back({{"name", part.name},
-                      {"size_mm", size_json(size)},
+                      {"size_mm", millimetres_json(size)},
                       {"u", short_direction_json(part.surface.u)},
                       {"v", short_direction_json(part.surface.v)},
                       {"deviation_m", part.deviation_m},
@@ -327,7 +360,7 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
     trim_deviation_m = std::max(trim_deviation_m, part.trim_deviation_m);
   }
   const Vector3 size = all.high - all.low;
-  facts.add("Size", size_text(size), "size_mm", size_json(size));
+  facts.add("Size", size_text(size), "size_mm", millimetres_json(size));
   facts.add("", "", "bodies", std::move(bodies));
   facts.add("", "", "deviation_m", deviation_m);
   if (trim_deviation_m >= shown_trim_deviation_m) {

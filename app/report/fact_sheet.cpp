@@ -10,6 +10,10 @@ Json components_json(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
+Json millimetres_json(const Vector3& vector_m) {
+  return components_json(1e3 * vector_m);
+}
+
 void FactSheet::add(const std::string& label, const std::string& text, const std::string& field, Json value) {
   if (!label.empty()) lines_.emplace_back(label, text);
   if (!field.empty()) json_[field] = std::move(value);

@@ -13,6 +13,8 @@ namespace spoonbill {
 
 // Returns the three components of a vector as a list.
 Json components_json(const Vector3& vector);
+// Returns them in millimetres.
+Json millimetres_json(const Vector3& vector_m);
 
 class FactSheet {
  public:

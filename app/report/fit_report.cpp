@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
 #include "engine/base/file.h"
 #include "engine/base/geometry.h"
@@ -28,10 +29,6 @@ std::string distances_text(const Deviation& deviation) {
 
 std::string control_text(const Surface& surface) {
   return std::to_string(surface.net.rows) + " x " + std::to_string(surface.net.columns);
-}
-
-Json millimetres_json(const Vector3& size_m) {
-  return Json::array({1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z()});
 }
 
 Vector3 size_of_all(const ScanFit& fit) {

@@ -15,6 +15,7 @@
 #include "engine/exchange/old_documents.h"
 #include "engine/exchange/scene_json.h"
 #include "engine/exchange/surface_json.h"
+#include "engine/scene/place_body.h"
 
 namespace spoonbill {
 

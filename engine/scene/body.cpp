@@ -34,27 +34,6 @@ Pose BodyPlacement::pose() const {
   return {position_m, Quaternion(Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0, axis))};
 }
 
-void move_body(const Pose& pose, Body& body) {
-  if (body.mesh) {
-    body.mesh_pose = composed(pose, body.mesh_pose);
-  } else {
-    body.surface = placed(std::move(body.surface), pose);
-  }
-  for (Load& load : body.loads) {
-    if (auto* const force = std::get_if<ForceLoad>(&load)) force->force_n = pose.orientation * force->force_n;
-    if (auto* const force = std::get_if<PointLoad>(&load)) force->force_n = pose.orientation * force->force_n;
-  }
-  for (Support& support : body.supports) {
-    if (support.motion) support.motion->displacement_m = pose.orientation * support.motion->displacement_m;
-  }
-  if (!body.motion) return;
-  body.motion->point_m = pose.position_m + pose.orientation * body.motion->point_m;
-  for (Waypoint& waypoint : body.motion->waypoints) {
-    waypoint.moved_m = pose.orientation * waypoint.moved_m;
-    waypoint.axis = pose.orientation * waypoint.axis;
-  }
-}
-
 Status check_feature_map(const FeatureMapSettings& settings) {
   return check_fields("feature_map: ", settings);
 }

@@ -156,9 +156,6 @@ inline constexpr auto fields_of<BodyPlacement> = std::to_array<Field<BodyPlaceme
     number_field("angle_deg", &BodyPlacement::angle_deg, placement_angle_range_deg).optional(),
 });
 
-// Moves a body with its loads, its motion and the motions of its supports.
-void move_body(const Pose& pose, Body& body);
-
 // Returns an error that names the first field out of range, with its value and its range.
 Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);

@@ -146,7 +146,7 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"cap", "v_end"}, exit_failed, "not the open end of a tube"},
       {{"cap", "top\nend"}, exit_wrong_use, "edge 'top?end' is unknown"},
       {{"cap", "v_end", "3"}, exit_wrong_use, "not a length with a unit"},
-      {{"me\nlt"}, exit_wrong_use, "'me?lt' is not a change; choose from split"}};
+      {{"me\nlt"}, exit_wrong_use, "'me?lt' is not a change; choose from move"}};
   for (const auto& [words, code, told] : cases) {
     std::vector<std::string> arguments{"change", handle};
     arguments.insert(arguments.end(), words.begin(), words.end());

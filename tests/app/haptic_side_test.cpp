@@ -157,13 +157,14 @@ TEST(HapticSide, RefinesDuringAStrokeWithoutSkippingATick) {
   Side side(false, document);
   side.begin_recording(place.path("refined.jsonl"));
   side.tick(2000);
-  side.aim(at_height(0.0005, button_main));
   const auto columns = [&] { return side.frame().snapshot.bodies[0].surface.v.control_point_count(); };
   const auto rows = [&] { return side.frame().snapshot.bodies[0].surface.u.control_point_count(); };
   const int first_columns = columns(), first_rows = rows();
   std::uint64_t ticks = side.frame().snapshot.tick;
   bool is_refined_in_stroke = false;
   for (int i = 0; i < 20'000 && !is_refined_in_stroke; ++i) {
+    // The clay gives way, so that only a hand that goes on keeps touching it.
+    side.aim(at_height(0.0005 - 5e-6 * i, button_main));
     EXPECT_EQ(side.tick(4), 0U) << i;
     ASSERT_EQ(side.frame().snapshot.tick, ticks += 4);
     is_refined_in_stroke = side.frame().facts.in_stroke && (columns() > first_columns || rows() > first_rows);

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/scene/place_body.h"
 #include "engine/simulation/body_hold.h"
 #include "engine/trial/trial.h"
 #include "tests/engine/allocations.h"

@@ -11,6 +11,7 @@
 #include "engine/exchange/document.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/material/rigid/rigid_mass.h"
+#include "engine/scene/place_body.h"
 #include "engine/trial/trial.h"
 #include "engine/trial/trial_report.h"
 #include "tests/engine/allocations.h"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/scene/place_body.h"
 #include "engine/simulation/body_hold.h"
 #include "tests/engine/forces/samples.h"
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/processor.h"
 #include "engine/material/rigid/rigid_mass.h"
+#include "engine/scene/place_body.h"
 #include "engine/simulation/body_hold.h"
 #include "engine/trial/trial.h"
 #include "tests/engine/allocations.h"

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/scene/place_body.h"
 #include "engine/trial/rim.h"
 #include "engine/trial/trial.h"
 #include "tests/engine/forces/samples.h"

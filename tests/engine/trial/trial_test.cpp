@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/processor.h"
+#include "engine/scene/place_body.h"
 #include "engine/simulation/body_contact.h"
 #include "engine/simulation/body_hold.h"
 #include "engine/trial/trial_report.h"
