@@ -121,8 +121,8 @@ class TargetMailbox {
 };
 
 // Interpolates targets that arrive once a frame to one target per tick, so that the hand moves smoothly. A
-// new target is reached after as many ticks as passed between the two targets before it: at a steady frame
-// rate the hand neither waits nor jumps, however slow the drawing is.
+// new target is reached after as many ticks as have passed since the target before it. At a steady rate of 15
+// to 60 frames per second, the hand then neither waits nor jumps.
 class TargetFollower {
  public:
   // Number of ticks in which a new target is reached: one frame at 60 and at 15 frames per second.

@@ -184,6 +184,8 @@ constexpr double hover_gap_m = 0.001;
 
 // Time until a press reaches its full depth.
 constexpr double seconds_to_depth = 0.25;
+// Longest time that a frame adds, so that a frame that took long does not make the hand jump.
+constexpr double longest_step_s = 1.0 / 15.0;
 constexpr double depth_per_notch_m = 0.001;
 
 // Depth of a press with a tool that attaches to the body, just enough to touch the surface. It does not
@@ -242,7 +244,7 @@ void MouseHand::hover(const Ray& ray, const Camera& camera, const SurfacePick& p
 void MouseHand::press(const Ray& ray, const Pointer& pointer, const Camera& camera, const MouseStroke& stroke,
                       double elapsed_s) {
   Press& press = *press_;
-  press.seconds = std::min(press.seconds + elapsed_s, seconds_to_depth);
+  press.seconds = std::min(press.seconds + std::min(elapsed_s, longest_step_s), seconds_to_depth);
   press.depth_m += depth_per_notch_m * pointer.wheel;
   const double fraction = press.seconds / seconds_to_depth;
   const double depth_m = stroke.grips ? grip_depth_m : hover_gap_m + stroke.strength_m;

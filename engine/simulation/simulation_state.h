@@ -107,6 +107,7 @@ struct ToolTouch {
   std::span<const BodyState> bodies;
   const ToolHold& hold;
   bool inside = false;  // true if the tool is inside a body
+  bool holds = false;   // true if a push keeps hold of what it touches
 };
 
 // Kernel of a tool action. Each tick calls constrain() for the tool and its mirror image, moves the bodies,

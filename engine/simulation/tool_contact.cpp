@@ -83,6 +83,7 @@ void ToolContact::release() {
   constraints_.forget();
   for (BodyContact& contact : contacts_) contact.points.fill({});
   gripped_ = false;
+  held_.body = -1;
   local_stroke_.end();
 }
 
@@ -91,6 +92,7 @@ void ToolContact::carry_over(const ToolContact& before, int body, std::span<cons
   lifted_ = before.lifted_;
   hovered_ = before.hovered_;
   gripped_ = before.gripped_;
+  held_ = before.held_;
   is_solid_ = before.is_solid_;
   shape_ = before.shape_;
   for (std::size_t b = 0; b < contacts_.size(); ++b) {
@@ -135,7 +137,8 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
     near |= collision.found && -collision.nearest.depth_m <= find_margin_m(bodies[b]);
   }
   if (!acts(inside, near, hold)) return release();
-  find_kernel(tool).constrain(*this, {bodies, hold, inside});
+  find_kernel(tool).constrain(*this,
+                              {bodies, hold, inside, hold.gripping && tool.sideways == ToolGlide::hold});
 }
 
 void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) {
@@ -156,6 +159,27 @@ void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) 
       add_pushes_between_samples(body, bodies[b]);
     }
   }
+}
+
+void ToolContact::hold_sideways(std::span<const BodyState> bodies, const ToolHold& hold, bool holds) {
+  // A tool that clay has given way under is still at the surface.
+  constexpr double lost_gap_m = 5e-4;
+  const Pose& pose = hold.pose;
+  if (held_.body >= 0) {
+    const CollisionResult& collision = contacts_[static_cast<std::size_t>(held_.body)].collision;
+    if (!holds || !collision.found || -collision.nearest.depth_m > lost_gap_m) held_.body = -1;
+  } else if (const int deepest = deepest_body(); holds && is_inside(collision(deepest))) {
+    const BodyState& state = bodies[static_cast<std::size_t>(deepest)];
+    const SurfaceContact& nearest = collision(deepest).nearest;
+    const Vector3 point_m = state.mapping().at(nearest.u, nearest.v).position_m(state.lattice);
+    const Quaternion into_tool = pose.orientation.conjugate();
+    held_ = {deepest, nearest.u, nearest.v, into_tool * (point_m - pose.position_m),
+             into_tool * nearest.normal};
+  }
+  if (held_.body < 0) return;
+  const BodyState& state = bodies[static_cast<std::size_t>(held_.body)];
+  overflow_ |= !constraints_.add_hold(held_.body, state.lattice, state.mapping().at(held_.u, held_.v),
+                                      held_.offset_m, pose.orientation * held_.normal);
 }
 
 void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) {

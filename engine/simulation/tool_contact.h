@@ -48,6 +48,9 @@ class ToolContact {
   // Keeps the bodies' surfaces out of the tool in this tick; the surfaces slide along the tool. To be called
   // by kernels, after prepare() has found the contacts.
   void push(std::span<const BodyState> bodies, const ToolHold& hold);
+  // Adds a hold on the point that the tool has touched first since it began to hold, as long as the tool
+  // stays at the surface. Call after push() in every tick, with `holds` false where the tool may slide.
+  void hold_sideways(std::span<const BodyState> bodies, const ToolHold& hold, bool holds);
   // Keeps only the nearest points of the surfaces out of the tool in this tick. For bodies that do not yield
   // to the tool's force.
   void push_nearest(std::span<const BodyState> bodies, const ToolHold& hold);
@@ -96,9 +99,20 @@ class ToolContact {
         visit(&point.v, 1);
       }
     }
+    if (held_.body < 0) return;
+    for (const double* value : {&held_.u, &held_.v}) visit(value, 1);
+    for (const Vector3* value : {&held_.offset_m, &held_.normal}) visit(value->data(), 3);
   }
 
  private:
+  // Point of a body's surface that the tool keeps hold of sideways, and its place and the surface's normal in
+  // the tool's frame when the tool first touched it.
+  struct HeldPoint {
+    int body = -1;  // -1 for none
+    double u = 0.0, v = 0.0;
+    Vector3 offset_m = Vector3::Zero();
+    Vector3 normal = Vector3::Zero();
+  };
   // Point of a body's surface that is, or was, nearest to the tool.
   struct ContactPoint {
     bool is_used = false;
@@ -163,6 +177,7 @@ class ToolContact {
   ToolShape shape_;                    // for all other tools
   ContactConstraints constraints_;
   LocalStroke local_stroke_;
+  HeldPoint held_;
   bool is_solid_ = false;
   bool gripped_ = false;
   bool lifted_ = false;

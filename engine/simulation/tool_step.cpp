@@ -19,6 +19,7 @@ namespace {
 // Push: keeps the surfaces of the bodies out of the tool and never pulls them.
 void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
+  contact.hold_sideways(touch.bodies, touch.hold, touch.holds);
 }
 
 // Pull: grips the surface inside the tool as soon as the button is down and the tool is inside a body. Fixes
@@ -213,8 +214,8 @@ double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
 }
 
-// Friction coefficient of a tool that keeps hold of what it touches. It slides only where the hand hardly
-// presses.
+// Friction coefficient of a tool of local reach that keeps hold of what it touches. It meets the body as a
+// rigid wall, and slides only where the hand hardly presses.
 constexpr double hold_friction = 100.0;
 
 ToolMotion make_motion(const Simulation::State& s, const Pose& from, const ToolHold& hold,
@@ -228,7 +229,8 @@ ToolMotion make_motion(const Simulation::State& s, const Pose& from, const ToolH
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   motion.coupling_n_per_m = choose_coupling(s, coupling_n_per_m);
   motion.body_yields = find_kernel(tool).body_yields;
-  if (hold.gripping && tool.sideways == ToolGlide::hold && tool.action == ToolAction::push) {
+  const bool is_local_push = tool.is_local() && tool.action == ToolAction::push;
+  if (hold.gripping && tool.sideways == ToolGlide::hold && is_local_push) {
     motion.friction = hold_friction;
   }
   return motion;

@@ -83,6 +83,12 @@ bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const 
   return add({.kind = Kind::grip, .body = body, .point = point, .direction = offset_m}, lattice);
 }
 
+bool ContactConstraints::add_hold(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                                  const Vector3& offset_m, const Vector3& normal) {
+  return add({.kind = Kind::hold, .body = body, .point = point, .direction = offset_m, .normal = normal},
+             lattice);
+}
+
 bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& lattice) {
   SPOONBILL_ASSERT_DEBUG(constraint.body >= 0 && constraint.body < lattice_capacity);
   if (constraints_.size() == capacity_) return false;
@@ -141,6 +147,8 @@ void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& 
     const auto cap = static_cast<double>(pass.push_speed_caps_m_per_s[constraint.body]);
     if (constraint.kind == Kind::grip) {
       solve_grip(lattice, constraint, tool, pass.h_s, cap);
+    } else if (constraint.kind == Kind::hold) {
+      solve_hold(lattice, constraint, tool, pass.h_s, cap);
     } else {
       solve_push(lattice, constraint, tool, pass.h_s, cap);
     }
@@ -229,16 +237,34 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
   exchange(lattice, constraint, tool, impulse);
 }
 
+// Returns the velocity with which a point that is `miss_m` away from its place in the tool's frame returns.
+Vector3 ContactConstraints::find_return_m_per_s(const Vector3& miss_m, const Constraint& constraint, double h,
+                                                double cap) {
+  const double rate = constraint.is_implicit ? stiff_grip_correction_per_s : grip_correction_per_s;
+  const Vector3 target = miss_m * std::min(rate, max_correction / h);
+  const double speed = target.norm();
+  return speed > cap ? Vector3(target * (cap / speed)) : target;
+}
+
 void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
   const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - constraint.position_m;
-  const double rate = constraint.is_implicit ? stiff_grip_correction_per_s : grip_correction_per_s;
-  Vector3 target = miss * std::min(rate, max_correction / h);
-  const double speed = target.norm();
-  if (speed > cap) target *= cap / speed;
+  const Vector3 target = find_return_m_per_s(miss, constraint, h, cap);
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
   exchange(lattice, constraint, tool,
            (tool.velocity_m_per_s + target - velocity) / (constraint.compliance + response_compliance_));
+}
+
+void ContactConstraints::solve_hold(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                    double h, double cap) {
+  const Vector3& normal = constraint.normal;
+  const auto across = [&](const Vector3& vector) -> Vector3 { return vector - vector.dot(normal) * normal; };
+  const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - constraint.position_m;
+  const Vector3 target = find_return_m_per_s(across(miss), constraint, h, cap);
+  const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
+  exchange(lattice, constraint, tool,
+           across(tool.velocity_m_per_s + target - velocity) /
+               (constraint.slide_compliance + response_compliance_));
 }
 
 void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {

@@ -87,6 +87,9 @@ class ContactConstraints {
   // Adds a point that the tool grips. The tool holds it at the offset `offset_m` from the tool's centre, in
   // the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
+  // Holds a point at `offset_m` in the tool's frame, but only across the unit vector `normal`.
+  bool add_hold(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m,
+                const Vector3& normal);
 
   // Returns the force in N with which the tool pushed a point at the end of the last tick; 0 if it did not
   // push the point, and for changing_point_key.
@@ -148,15 +151,16 @@ class ContactConstraints {
   }
 
  private:
-  enum class Kind { sphere_push, plane_push, grip };
+  enum class Kind { sphere_push, plane_push, grip, hold };
   struct Constraint {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
     // Rest position of the constrained point. In the argument of add(), it is only the offset from `point`.
     Vector3 rest_m = Vector3::Zero();
-    Vector3 direction = Vector3::Zero();  // normal of a plane push, or offset of a grip in the tool's frame
-    double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
+    Vector3 direction =
+        Vector3::Zero();    // normal of a plane push; offset of a grip or hold in the tool's frame
+    double offset_m = 0.0;  // distance of the plane from the tool's centre; plane push only
     // The following four values are those of the last start(); they stay the same until the tool moves.
     Vector3 position_m = Vector3::Zero();  // position of the constrained point
     // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere, and for grips.
@@ -180,6 +184,9 @@ class ContactConstraints {
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
+  void solve_hold(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
+  static Vector3 find_return_m_per_s(const Vector3& miss_m, const Constraint& constraint, double h,
+                                     double cap);
   // Computes the values of a constraint that stay the same until the tool moves.
   void locate(const LatticeView& lattice, Constraint& constraint, const ToolState& tool) const;
   ContactPush find_push(const LatticeView& lattice, const Constraint& constraint,
