@@ -182,7 +182,7 @@ CommandEntry add_change(OptionSet root) {
   add_parsed_option(
       parser, "--about", "X,Y,Z", [](const std::string& text) { return parse_position(text); },
       [options](const Vector3& about_m) { options->about_m = about_m; },
-      "Point that a change of the place keeps, such as 10mm,0,0; default: the body's centre");
+      "Point that rotate, scale, mirror and align length keep, such as 10mm,0,0; default: the body's centre");
   // CHANGE and --continuity may be given in any order, so the check runs after both are parsed.
   parser.set_final_check([options]() -> Status {
     const auto* const surface_change = std::get_if<ChangeRequest>(&options->change);
@@ -199,8 +199,10 @@ CommandEntry add_change(OptionSet root) {
                             : "--control: applies only to 'rebuild'; remove --control",
                    "--control"};
     }
-    if (options->about_m && surface_change) {
-      return Error{ErrorCode::inconsistent, "--about: applies only to changes of the place; remove --about",
+    const auto* const placing = std::get_if<PlacingRequest>(&options->change);
+    if (options->about_m && !(placing && takes_point(placing->kind))) {
+      return Error{ErrorCode::inconsistent,
+                   "--about: applies only to rotate, scale, mirror and align length; remove --about",
                    "--about"};
     }
     return {};

@@ -396,7 +396,7 @@ Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const Merge
 
 Status bring_if_wanted(const MergeOptions& options, MergeParts& parts) {
   if (!options.brings) return {};
-  auto brought = bring_parts(parts.patches, options.request.chosen);
+  auto brought = bring_parts(parts.patches, options.request);
   if (!brought) return brought.error().in("merge");
   parts.brought = std::move(brought).value();
   return {};

@@ -11,8 +11,9 @@
 #include "app/commands/option_values.h"
 #include "app/report/document_facts.h"
 #include "engine/base/text.h"
-#include "engine/bspline/evaluate.h"
+#include "engine/bspline/quadrature.h"
 #include "engine/inspection/mass_properties.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/scene/place_body.h"
 
 namespace spoonbill {
@@ -92,73 +93,80 @@ std::string example_of(const Placing& placing) {
   return std::string(placing.first) + " " + placing.form;
 }
 
-Vector3 find_centre_m(const Body& body) {
-  if (body.mesh) {
-    const TriangleMesh mesh = find_placed_mesh(body);
-    double volume = 0.0;
-    Vector3 moment = Vector3::Zero();
-    for (const TriangleCorners& corners : mesh.triangles) {
-      const Vector3 &a = mesh.vertices_m[corners[0]], &b = mesh.vertices_m[corners[1]],
-                    &c = mesh.vertices_m[corners[2]];
-      const double six_volumes = a.dot(b.cross(c));
-      volume += six_volumes;
-      moment += 0.25 * six_volumes * (a + b + c);
-    }
-    return moment / volume;
-  }
+// The bodies that a placing moves.
+using Placed = std::vector<Body*>;
+
+TrimmedArea find_area(const Body& body) {
   const auto area = make_trimmed_area(body);
-  const EnclosedMass mass = area && area.value() ? compute_enclosed_mass(body.surface, *area.value())
-                                                 : compute_enclosed_mass(body.surface);
-  return std::abs(mass.volume_m3) > 0.0 ? mass.centre_m : mass.area_centre_m;
+  return area && area.value() ? *area.value() : TrimmedArea();
 }
 
-Box find_extent(const Body& body) {
-  return body.mesh ? find_bounds(body) : extent_of(body.surface, body.trims);
-}
+// Moments of areas or volumes, from which centres and directions follow.
+struct Moments {
+  double size = 0.0;                                 // area or volume
+  Vector3 first = Vector3::Zero();                   // integral of the position
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // integral of the position times its transpose
 
-struct WeighedPoint {
-  Vector3 position_m;
-  double area_m2;  // area for which the point stands, up to a common factor
+  void add(const Vector3& position_m, double weight) {
+    size += weight;
+    first += weight * position_m;
+    second += weight * position_m * position_m.transpose();
+  }
 };
 
-std::vector<WeighedPoint> sample_area(const Body& body) {
-  std::vector<WeighedPoint> points;
-  if (body.mesh) {
-    const TriangleMesh mesh = find_placed_mesh(body);
+Moments find_area_moments(const Placed& bodies) {
+  Moments moments;
+  for (const Body* const body : bodies) {
+    if (!body->mesh) {
+      visit_area(body->surface, find_area(*body), [&](const SurfacePoint& point, double weight) {
+        moments.add(point.position_m, weight * point.du.cross(point.dv).norm());
+      });
+      continue;
+    }
+    const TriangleMesh mesh = find_placed_mesh(*body);
     for (const TriangleCorners& corners : mesh.triangles) {
       const Vector3 &a = mesh.vertices_m[corners[0]], &b = mesh.vertices_m[corners[1]],
                     &c = mesh.vertices_m[corners[2]];
-      points.push_back({(a + b + c) / 3.0, (b - a).cross(c - a).norm()});
-    }
-    return points;
-  }
-  constexpr int samples = 100;
-  const auto v = uniform_parameters(body.surface.v, samples);
-  for (const double at_u : uniform_parameters(body.surface.u, samples)) {
-    for (const double at_v : v) {
-      const SurfacePoint point = evaluate(body.surface, at_u, at_v);
-      points.push_back({point.position_m, point.du.cross(point.dv).norm()});
+      const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
+      // The rule with the midpoints of the three sides is exact for second moments.
+      for (const Vector3& midpoint :
+           {Vector3(0.5 * (a + b)), Vector3(0.5 * (b + c)), Vector3(0.5 * (c + a))}) {
+        moments.add(midpoint, area_m2 / 3.0);
+      }
     }
   }
-  return points;
+  return moments;
 }
 
-// Returns the turn that brings the body's longest direction to the axis, by at most a right angle. The
-// longest direction is that of the largest moment of its points.
-Result<Quaternion> find_length_turn(const Body& body, const Vector3& axis) {
-  const std::vector<WeighedPoint> points = sample_area(body);
-  double area_m2 = 0.0;
-  Vector3 mean_m = Vector3::Zero();
-  for (const WeighedPoint& point : points) {
-    area_m2 += point.area_m2;
-    mean_m += point.area_m2 * point.position_m;
+// Returns the centre of the volume of one closed body, or that of the area.
+Vector3 find_centre_m(const Placed& bodies) {
+  const Body& body = *bodies.front();
+  if (bodies.size() == 1 && body.mesh) {
+    Moments volume;
+    const TriangleMesh mesh = find_placed_mesh(body);
+    const Vector3& origin_m = mesh.vertices_m.front();
+    for (const TriangleCorners& corners : mesh.triangles) {
+      const Vector3 a = mesh.vertices_m[corners[0]] - origin_m, b = mesh.vertices_m[corners[1]] - origin_m,
+                    c = mesh.vertices_m[corners[2]] - origin_m;
+      volume.add(0.25 * (a + b + c), a.dot(b.cross(c)));
+    }
+    return origin_m + volume.first / volume.size;
   }
-  mean_m /= area_m2;
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const auto& [position_m, weight] : points) {
-    moments += weight * (position_m - mean_m) * (position_m - mean_m).transpose();
+  if (bodies.size() == 1 && body.trims.empty() &&
+      find_closing(body.surface).closedness == Closedness::solid) {
+    return compute_enclosed_mass(body.surface).centre_m;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  const Moments area = find_area_moments(bodies);
+  return area.first / area.size;
+}
+
+// Returns the turn that brings the longest direction to the axis, by at most a right angle. The longest
+// direction is that of the largest second moment of the area.
+Result<Quaternion> find_length_turn(const Placed& bodies, const Vector3& axis) {
+  const Moments area = find_area_moments(bodies);
+  const Vector3 centre_m = area.first / area.size;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(area.second / area.size -
+                                                              centre_m * centre_m.transpose());
   const Vector3 sizes = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   constexpr double clearly_longer = 1.02;
   if (!(sizes[2] > clearly_longer * sizes[1])) {
@@ -170,13 +178,25 @@ Result<Quaternion> find_length_turn(const Body& body, const Vector3& axis) {
   return Quaternion::FromTwoVectors(length, axis);
 }
 
+// Returns how far the bodies reach along a direction.
+Range<double> find_reach(const Placed& bodies, const Vector3& direction) {
+  const Pose turned{Vector3::Zero(), Quaternion::FromTwoVectors(direction, Vector3::UnitX())};
+  Box box;
+  for (const Body* const body : bodies) {
+    Body copy = *body;
+    move_body(turned, copy);
+    box.join(copy.mesh ? find_bounds(copy) : extent_of(copy.surface, copy.trims));
+  }
+  return {box.low.x(), box.high.x()};
+}
+
 Pose turn_about(const Quaternion& turn, const Vector3& point_m) {
   return {point_m - turn * point_m, turn};
 }
 
-// Maps of the points and normals that go along with the only body of a scene.
+// Maps of what goes along with the only body of a scene.
 struct Followers {
-  std::function<Vector3(const Vector3&)> point, normal;
+  std::function<Vector3(const Vector3&)> point, normal, axis;
 };
 
 void move_followers(const Followers& map, Scene& scene) {
@@ -184,61 +204,75 @@ void move_followers(const Followers& map, Scene& scene) {
     plane.point_m = map.point(plane.point_m);
     plane.normal = map.normal(plane.normal).normalized();
   }
-  scene.symmetry.point_m = map.point(scene.symmetry.point_m);
-  scene.symmetry.normal = map.normal(scene.symmetry.normal).normalized();
+  if (scene.symmetry.on) {
+    scene.symmetry.point_m = map.point(scene.symmetry.point_m);
+    scene.symmetry.normal = map.normal(scene.symmetry.normal).normalized();
+  }
   if (!scene.trial) return;
   scene.trial->point_m = map.point(scene.trial->point_m);
-  scene.trial->axis = map.normal(scene.trial->axis).normalized();
+  scene.trial->axis = map.axis(scene.trial->axis).normalized();
 }
 
-Followers place_by(const Pose& pose, Body& body) {
-  move_body(pose, body);
+Followers place_by(const Pose& pose, const Placed& bodies) {
+  for (Body* const body : bodies) move_body(pose, *body);
+  const auto turned = [pose](const Vector3& direction) -> Vector3 { return pose.orientation * direction; };
   return {[pose](const Vector3& point) -> Vector3 { return pose.position_m + pose.orientation * point; },
-          [pose](const Vector3& normal) -> Vector3 { return pose.orientation * normal; }};
+          turned, turned};
 }
 
-Result<Followers> place(const PlacingRequest& request, const Vector3& about_m, Body& body) {
+Followers scale_by(const Vector3& factors, const Vector3& about_m, const Placed& bodies) {
+  for (Body* const body : bodies) scale_body(factors, about_m, *body);
+  return {[=](const Vector3& point) -> Vector3 { return about_m + factors.cwiseProduct(point - about_m); },
+          [=](const Vector3& normal) -> Vector3 { return normal.cwiseQuotient(factors); },
+          [=](const Vector3& axis) -> Vector3 { return factors.cwiseProduct(axis); }};
+}
+
+Followers mirror_by(const Vector3& normal, const Vector3& about_m, const Placed& bodies) {
+  for (Body* const body : bodies) mirror_body(about_m, normal, *body);
+  const auto turned = [=](const Vector3& direction) -> Vector3 {
+    return direction - 2.0 * normal.dot(direction) * normal;
+  };
+  return {[=](const Vector3& point) -> Vector3 { return about_m + turned(point - about_m); }, turned,
+          // A mirrored turn goes the other way about the mirrored axis.
+          [=](const Vector3& axis) -> Vector3 { return -turned(axis); }};
+}
+
+Result<Followers> place(const PlacingRequest& request, const Vector3& about_m, const Placed& bodies) {
+  const Vector3& axis = request.vector;
   switch (request.kind) {
     case PlacingKind::move:
-      return place_by({request.vector, Quaternion::Identity()}, body);
+      return place_by({request.vector, Quaternion::Identity()}, bodies);
     case PlacingKind::rotate: {
       const double angle = request.angle_deg * std::numbers::pi / 180.0;
-      return place_by(turn_about(Quaternion(Eigen::AngleAxisd(angle, request.vector)), about_m), body);
+      return place_by(turn_about(Quaternion(Eigen::AngleAxisd(angle, axis)), about_m), bodies);
     }
-    case PlacingKind::scale: {
-      const Vector3 factors = request.vector;
-      scale_body(factors, about_m, body);
-      return Followers{
-          [=](const Vector3& point) -> Vector3 { return about_m + factors.cwiseProduct(point - about_m); },
-          [=](const Vector3& normal) -> Vector3 { return normal.cwiseQuotient(factors); }};
-    }
-    case PlacingKind::mirror: {
-      const Vector3 axis = request.vector;
-      mirror_body(about_m, axis, body);
-      const auto turned = [=](const Vector3& normal) -> Vector3 {
-        return normal - 2.0 * axis.dot(normal) * axis;
-      };
-      return Followers{[=](const Vector3& point) -> Vector3 { return about_m + turned(point - about_m); },
-                       turned};
-    }
+    case PlacingKind::scale:
+      return scale_by(request.vector, about_m, bodies);
+    case PlacingKind::mirror:
+      return mirror_by(axis, about_m, bodies);
     case PlacingKind::align_length: {
-      const auto turn = find_length_turn(body, request.vector);
+      const auto turn = find_length_turn(bodies, axis);
       if (!turn) return turn.error();
-      return place_by(turn_about(turn.value(), about_m), body);
+      return place_by(turn_about(turn.value(), about_m), bodies);
     }
     case PlacingKind::align_side:
       break;
   }
-  const Vector3& axis = request.vector;
-  // The ends along a slanted axis are those of the body turned until the axis is x.
-  Body turned = body;
-  move_body({Vector3::Zero(), Quaternion::FromTwoVectors(axis, Vector3::UnitX())}, turned);
-  const Box box = find_extent(turned);
-  const double low = box.low.x(), high = box.high.x();
+  const auto [low, high] = find_reach(bodies, axis);
   const double at = request.side == BoxSide::low    ? low
                     : request.side == BoxSide::high ? high
                                                     : 0.5 * (low + high);
-  return place_by({(request.place_m - at) * axis, Quaternion::Identity()}, body);
+  return place_by({(request.place_m - at) * axis, Quaternion::Identity()}, bodies);
+}
+
+// Returns the body with the others of its solid, whose faces move together.
+Placed find_placed(std::vector<Body>& bodies, std::size_t index) {
+  Placed placed{&bodies[index]};
+  for (Body& body : bodies) {
+    const bool is_same_solid = !body.solid.empty() && body.solid == bodies[index].solid;
+    if (is_same_solid && &body != placed.front()) placed.push_back(&body);
+  }
+  return placed;
 }
 
 }  // namespace
@@ -267,19 +301,26 @@ Result<PlacingRequest> parse_placing(const std::vector<std::string>& words) {
 
 Status place_body(const PlacingRequest& request, const std::optional<Vector3>& about_m, std::size_t body,
                   Scene& scene, std::vector<std::string>& notes) {
-  Body& placed_body = scene.bodies[body];
-  const auto followers = place(request, about_m ? *about_m : find_centre_m(placed_body), placed_body);
+  const Placed placed = find_placed(scene.bodies, body);
+  const auto followers = place(request, about_m ? *about_m : find_centre_m(placed), placed);
   if (!followers) return followers.error();
-  if (scene.bodies.size() == 1) {
-    move_followers(followers.value(), scene);
-    return {};
+  if (placed.size() > 1) {
+    notes.push_back("the " + std::to_string(placed.size()) + " faces of the solid \"" +
+                    scene.bodies[body].solid + "\" were placed together");
   }
-  if (!scene.planes.empty() || scene.symmetry.on || scene.trial) {
+  if (scene.bodies.size() == placed.size()) {
+    move_followers(followers.value(), scene);
+  } else if (!scene.planes.empty() || scene.symmetry.on || scene.trial) {
     notes.push_back(
-        "fixing planes, the plane of symmetry and the trial stay where they are, because the "
-        "document has several bodies");
+        "fixing planes, the plane of symmetry and the trial stay where they are, because the document has "
+        "other "
+        "bodies");
   }
   return {};
+}
+
+bool takes_point(PlacingKind kind) {
+  return kind != PlacingKind::move && kind != PlacingKind::align_side;
 }
 
 std::string placing_names() {

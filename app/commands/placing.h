@@ -30,10 +30,13 @@ bool is_placing(const std::vector<std::string>& words);
 // is.
 Result<PlacingRequest> parse_placing(const std::vector<std::string>& words);
 
-// Places a body about a point; without one, about the body's centre: that of its volume or, if it encloses
-// none, of its area. Fixing planes, the plane of symmetry and the trial's axis go along with the only body of
-// a scene; beside other bodies they stay, and a note says so. Returns an error if the body has no length to
-// align.
+// Returns whether the result depends on the point about which a body is placed.
+bool takes_point(PlacingKind kind);
+
+// Places a body, with the other faces of its solid, about a point; without one, about the centre: that of the
+// volume or, of what encloses none, that of the area. Fixing planes, the plane of symmetry and the trial's
+// axis go along if no body stays; otherwise they stay, and a note says so. Returns an error if the body has
+// no length to align.
 Status place_body(const PlacingRequest& request, const std::optional<Vector3>& about_m, std::size_t body,
                   Scene& scene, std::vector<std::string>& notes);
 

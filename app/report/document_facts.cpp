@@ -238,40 +238,37 @@ Json add_body_cells(FactSheet& facts, const std::string& suffix, const LatticeMe
   return json;
 }
 
-// Returns how far the surface reaches in a direction. From the farthest sample, steps that halve lead to the
-// farthest point near it.
-double find_farthest(const Surface& surface, const Vector3& direction) {
-  const auto reach = [&](double u, double v) { return direction.dot(position(surface, u, v)); };
-  double farthest = -std::numeric_limits<double>::infinity(), best_u = 0.0, best_v = 0.0;
-  const auto offer = [&](double u, double v) {
-    const double there = reach(u, v);
-    if (!(there > farthest)) return false;
-    farthest = there;
-    best_u = u;
-    best_v = v;
+struct FarthestPoint {
+  double reach_m = -std::numeric_limits<double>::infinity();
+  double u = 0.0, v = 0.0;
+
+  // Takes over a farther point. Returns whether it is farther.
+  bool offer(double at_m, double at_u, double at_v) {
+    if (!(at_m > reach_m)) return false;
+    *this = {at_m, at_u, at_v};
     return true;
-  };
-  const auto v_parameters = uniform_parameters(surface.v, extent_samples);
-  for (const double u : uniform_parameters(surface.u, extent_samples)) {
-    for (const double v : v_parameters) offer(u, v);
   }
+};
+
+// Goes from a sample to the farthest point near it in a direction, by steps that halve.
+void climb(const Surface& surface, const Vector3& direction, FarthestPoint& farthest) {
   constexpr int halvings = 24, most_steps = 400;
   double step_u = surface.u.domain_length() / extent_samples,
          step_v = surface.v.domain_length() / extent_samples;
   for (int k = 0, steps = 0; k < halvings && steps < most_steps; ++steps) {
-    const double u = best_u, v = best_v;
-    bool is_better = false;
-    for (const double to_u : {u - step_u, u, u + step_u}) {
-      for (const double to_v : {v - step_v, v, v + step_v}) {
-        is_better |= offer(surface.u.into_domain(to_u), surface.v.into_domain(to_v));
+    const FarthestPoint from = farthest;
+    bool is_farther = false;
+    for (const double to_u : {from.u - step_u, from.u, from.u + step_u}) {
+      for (const double to_v : {from.v - step_v, from.v, from.v + step_v}) {
+        const double u = surface.u.into_domain(to_u), v = surface.v.into_domain(to_v);
+        is_farther |= farthest.offer(direction.dot(position(surface, u, v)), u, v);
       }
     }
-    if (is_better) continue;
+    if (is_farther) continue;
     step_u *= 0.5;
     step_v *= 0.5;
     ++k;
   }
-  return farthest;
 }
 
 }  // namespace
@@ -283,10 +280,25 @@ Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims) {
                                 uniform_parameters(surface.v, trimmed_extent_samples));
     if (area && grid) return extent_within(surface, grid.value(), area.value());
   }
+  std::array<FarthestPoint, 3> low, high;
+  const auto v_parameters = uniform_parameters(surface.v, extent_samples);
+  for (const double u : uniform_parameters(surface.u, extent_samples)) {
+    for (const double v : v_parameters) {
+      const Vector3 point_m = position(surface, u, v);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double at_m = point_m[static_cast<Eigen::Index>(axis)];
+        low[axis].offer(-at_m, u, v);
+        high[axis].offer(at_m, u, v);
+      }
+    }
+  }
   Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = -find_farthest(surface, -Vector3::Unit(axis));
-    box.high[axis] = find_farthest(surface, Vector3::Unit(axis));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<Eigen::Index>(axis);
+    climb(surface, -Vector3::Unit(at), low[axis]);
+    climb(surface, Vector3::Unit(at), high[axis]);
+    box.low[at] = -low[axis].reach_m;
+    box.high[at] = high[axis].reach_m;
   }
   return box;
 }

@@ -19,8 +19,8 @@ namespace spoonbill {
 // Returns "deformable", "fixed", "rigid", or "rigid, held by a hand".
 std::string kind_text(const Body& body);
 
-// Returns the box around a grid of points on the surface, accurate to about a thousandth of the size of the
-// box. For a trimmed surface it is the box around the area that the loops keep; invalid loops are ignored.
+// Returns the box around the surface. For a trimmed surface it is the box around the area that the loops
+// keep, accurate to about a thousandth of its size; invalid loops are ignored.
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims = {});
 
 // Adds the name, the unit of the file, the size of all bodies together and each body. In the JSON the bodies

@@ -26,7 +26,8 @@ constexpr double alike = 0.05;
 // An edge, its centre and direction, and what decides the roll: the points of a ring, or a normal.
 struct EdgeFrame {
   Vector3 centre_m = Vector3::Zero(), outward = Vector3::Zero(), normal = Vector3::Zero();
-  std::vector<Vector3> ring_m;  // from the centre of the ring; empty unless the part is a tube
+  bool is_tube = false;
+  std::vector<Vector3> ring_m;  // from the centre of the ring; empty for a pole without straight sides
 };
 
 Vector3 mean_of(const std::vector<Vector3>& points) {
@@ -48,19 +49,19 @@ Vector3 mean_normal(const Surface& surface, Side side, const std::vector<double>
 
 Result<EdgeFrame> find_frame(const Surface& surface, Side side) {
   EdgeFrame frame;
-  if (is_tube(surface)) {
+  frame.is_tube = is_tube(surface);
+  if (frame.is_tube) {
     const TubeEnd end = tube_end(surface, side);
     frame.centre_m = end.centre_m;
     frame.outward = end.outward;
-    Surface open = surface;
-    if (is_pole(surface, side)) {
-      auto opened = open_pole(surface, side, std::numeric_limits<double>::infinity());
-      if (!opened) return opened.error();
-      open = std::move(opened).value();
+    const auto open = is_pole(surface, side)
+                          ? open_pole(surface, side, std::numeric_limits<double>::infinity())
+                          : Result<Surface>(surface);
+    if (open) frame.ring_m = edge_samples(edge_curve(open.value(), side), ring_points).points_m;
+    if (!frame.ring_m.empty()) {
+      const Vector3 ring_centre_m = mean_of(frame.ring_m);
+      for (Vector3& point : frame.ring_m) point -= ring_centre_m;
     }
-    frame.ring_m = edge_samples(edge_curve(open, side), ring_points).points_m;
-    const Vector3 ring_centre_m = mean_of(frame.ring_m);
-    for (Vector3& point : frame.ring_m) point -= ring_centre_m;
   } else {
     if (!is_joinable(surface, side)) {
       return Error{ErrorCode::unsupported,
@@ -177,17 +178,17 @@ Result<Bringing> bring(const Surface& still, Side still_side, const Surface& mov
   const auto to = find_frame(still, still_side), from = find_frame(moved, moved_side);
   if (!to) return to.error();
   if (!from) return from.error();
-  if (to->ring_m.empty() != from->ring_m.empty()) {
+  if (to->is_tube != from->is_tube) {
     return Error{ErrorCode::mismatch, "one part is a tube and the other is not; choose edges of one kind"};
   }
   const Vector3& axis = to->outward;
   const Quaternion turn = smallest_turn(from->outward, -axis);
   Bringing bringing;
-  if (to->ring_m.empty()) {
+  if (!to->is_tube) {
     const auto across_axis = [&](const Vector3& v) -> Vector3 { return v - v.dot(axis) * axis; };
     const Vector3 wanted = across_axis(to->normal), present = across_axis(turn * from->normal);
     bringing.roll_rad = std::atan2(present.cross(wanted).dot(axis), present.dot(wanted));
-  } else {
+  } else if (!to->ring_m.empty() && !from->ring_m.empty()) {
     const Vector3 one = axis.unitOrthogonal(), other = axis.cross(one);
     std::vector<Vector3> turned_m;
     for (const Vector3& point : from->ring_m) turned_m.push_back(turn * point);
@@ -206,26 +207,9 @@ std::string patch_text(int patch) {
   return "patch " + std::to_string(patch + 1);
 }
 
-// Returns the edges of a part and of one before it that meet.
-Result<std::pair<PatchEdge, PatchEdge>> choose_edges(const std::vector<Surface>& parts, int part,
-                                                     const std::vector<ChosenEdges>& chosen,
-                                                     const std::vector<PatchEdge>& used) {
-  for (const ChosenEdges& edges : chosen) {
-    if (edges.b.patch == part && edges.a.patch < part) return std::pair(edges.a, edges.b);
-    if (edges.a.patch == part && edges.b.patch < part) return std::pair(edges.b, edges.a);
-  }
-  if (!chosen.empty()) {
-    return Error{ErrorCode::missing,
-                 patch_text(part) + " has no chosen edge that meets a patch before it; name a pair for it"};
-  }
-  std::pair<PatchEdge, PatchEdge> nearest;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (int other = 0; other <= part; ++other) {
-    if (!is_tube(parts[static_cast<std::size_t>(other)])) {
-      return Error{ErrorCode::unsupported,
-                   patch_text(other) + " is not a tube; name the edges that are to meet"};
-    }
-  }
+// Returns the free ends of a part before `part` and of `part` that are nearest to each other.
+std::pair<PatchEdge, PatchEdge> find_nearest_pair(const std::vector<Surface>& parts, int part,
+                                                  const std::vector<PatchEdge>& used) {
   const auto ends_of = [&](int which) {
     const auto [first, last] = tube_sides(parts[static_cast<std::size_t>(which)]);
     return std::array{PatchEdge{which, first}, PatchEdge{which, last}};
@@ -233,6 +217,8 @@ Result<std::pair<PatchEdge, PatchEdge>> choose_edges(const std::vector<Surface>&
   const auto centre_of = [&](const PatchEdge& end) {
     return tube_end(parts[static_cast<std::size_t>(end.patch)], end.side).centre_m;
   };
+  std::pair<PatchEdge, PatchEdge> nearest;
+  double least_m = std::numeric_limits<double>::infinity();
   for (int other = 0; other < part; ++other) {
     for (const PatchEdge& to : ends_of(other)) {
       if (std::find(used.begin(), used.end(), to) != used.end()) continue;
@@ -247,24 +233,65 @@ Result<std::pair<PatchEdge, PatchEdge>> choose_edges(const std::vector<Surface>&
   return nearest;
 }
 
-}  // namespace
+// Parts that were moved or stay, and the ends that meet.
+struct Bringer {
+  std::vector<Surface>& parts;
+  std::vector<BroughtPart> brought = {};
+  std::vector<PatchEdge> used = {};
 
-Result<std::vector<BroughtPart>> bring_parts(std::vector<Surface>& parts,
-                                             const std::vector<ChosenEdges>& chosen) {
-  std::vector<BroughtPart> brought;
-  std::vector<PatchEdge> used;
-  for (int part = 1; part < static_cast<int>(parts.size()); ++part) {
-    const auto edges = choose_edges(parts, part, chosen, used);
-    if (!edges) return edges.error();
-    const auto& [to, from] = edges.value();
-    Surface& moved = parts[static_cast<std::size_t>(part)];
+  Status add(const PatchEdge& to, const PatchEdge& from) {
+    Surface& moved = parts[static_cast<std::size_t>(from.patch)];
     const auto motion = bring(parts[static_cast<std::size_t>(to.patch)], to.side, moved, from.side);
-    if (!motion) return motion.error().in(patch_text(to.patch) + " and " + patch_text(part));
+    if (!motion) return motion.error().in(patch_text(to.patch) + " and " + patch_text(from.patch));
     moved = placed(std::move(moved), motion->pose);
     brought.push_back({to, from, motion.value()});
     used.insert(used.end(), {to, from});
+    return {};
   }
-  return brought;
+};
+
+Status bring_chosen(const std::vector<ChosenEdges>& chosen, Bringer& bringer) {
+  std::vector<bool> stays(bringer.parts.size(), false);
+  stays[0] = true;
+  const auto find_next = [&] {
+    return std::find_if(chosen.begin(), chosen.end(), [&](const ChosenEdges& edges) {
+      return stays[static_cast<std::size_t>(edges.a.patch)] != stays[static_cast<std::size_t>(edges.b.patch)];
+    });
+  };
+  for (auto next = find_next(); next != chosen.end(); next = find_next()) {
+    const bool first_stays = stays[static_cast<std::size_t>(next->a.patch)];
+    const PatchEdge &to = first_stays ? next->a : next->b, &from = first_stays ? next->b : next->a;
+    if (Status added = bringer.add(to, from); !added) return added;
+    stays[static_cast<std::size_t>(from.patch)] = true;
+  }
+  const auto lost = std::find(stays.begin(), stays.end(), false);
+  if (lost == stays.end()) return {};
+  return Error{ErrorCode::missing, patch_text(static_cast<int>(lost - stays.begin())) +
+                                       " is not connected with patch 1 by chosen edges; name a pair for it"};
+}
+
+Status bring_nearest(Bringer& bringer) {
+  for (int part = 0; part < static_cast<int>(bringer.parts.size()); ++part) {
+    if (!is_tube(bringer.parts[static_cast<std::size_t>(part)])) {
+      return Error{ErrorCode::unsupported,
+                   patch_text(part) + " is not a tube; name the edges that are to meet"};
+    }
+  }
+  for (int part = 1; part < static_cast<int>(bringer.parts.size()); ++part) {
+    const auto [to, from] = find_nearest_pair(bringer.parts, part, bringer.used);
+    if (Status added = bringer.add(to, from); !added) return added;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<BroughtPart>> bring_parts(std::vector<Surface>& parts, const MergeRequest& request) {
+  if (Status checked = check_merge(parts, request); !checked) return checked.error();
+  Bringer bringer{parts};
+  const Status done = request.chosen.empty() ? bring_nearest(bringer) : bring_chosen(request.chosen, bringer);
+  if (!done) return done.error();
+  return std::move(bringer.brought);
 }
 
 }  // namespace spoonbill

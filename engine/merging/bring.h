@@ -23,7 +23,8 @@ struct Bringing {
 // - position: the centres of the edges coincide; at a pole, the pole counts;
 // - direction: the two point out of their parts in opposite directions, by the smallest turn;
 // - roll: the rings of two tubes match best in shape, where several rolls match by the smallest; the normals
-//   of other patches agree. The ring of a pole is that at which merge() cuts it off.
+//   of other patches agree. The ring of a pole is where the sides become straight; without straight sides,
+//   the roll is 0.
 // Fails for an edge without a direction, and for a tube and a patch that is none.
 Result<Bringing> bring(const Surface& still, Side still_side, const Surface& moved, Side moved_side);
 
@@ -33,10 +34,10 @@ struct BroughtPart {
   Bringing motion;
 };
 
-// Moves each part after the first to one of the parts before it. `chosen` names the edges that meet; without
-// it, the nearest ends of tubes do. Fails like bring(), for a part that `chosen` does not connect with one
-// before it, and for parts without chosen edges that are no tubes.
-Result<std::vector<BroughtPart>> bring_parts(std::vector<Surface>& parts,
-                                             const std::vector<ChosenEdges>& chosen);
+// Moves parts until each meets one that does not move any more; the first part stays. The chosen edges meet,
+// in their order; without any, each part meets a part before it at the nearest ends of tubes. Fails like
+// check_merge() and bring(), for a part that no chosen edges connect with the first, and for parts without
+// chosen edges that are no tubes.
+Result<std::vector<BroughtPart>> bring_parts(std::vector<Surface>& parts, const MergeRequest& request);
 
 }  // namespace spoonbill

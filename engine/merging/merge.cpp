@@ -319,7 +319,9 @@ Error cannot_close(const OpenEdges& edges) {
 
 constexpr int most_patches = 64;
 
-Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
+}  // namespace
+
+Status check_merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   const int count = static_cast<int>(patches.size());
   if (count == 0) return Error(ErrorCode::missing, "there is no patch to merge; name at least one");
   if (count > most_patches) {
@@ -341,11 +343,9 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
   return check_named_once(request.chosen);
 }
 
-}  // namespace
-
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request) {
   SPOONBILL_ASSERT(request.join.tolerance_m >= 0.0 && request.join.blend_m >= 0.0);
-  if (Status status = check(patches, request); !status) return status.error();
+  if (Status status = check_merge(patches, request); !status) return status.error();
   if (patches.size() == 1) return Merged{patches[0], 0.0, {}};
   if (!request.join.progress.report(0.0)) return Progress::stopped();
   if (Status status = check_different(patches, request.join.tolerance_m); !status) return status.error();

@@ -42,6 +42,10 @@ struct Merged {
   std::vector<OpenEdges> left_open = {};  // pairs of edges that touch but were not joined
 };
 
+// Returns an error for no patches or too many, and for chosen edges that do not exist or contradict each
+// other.
+Status check_merge(const std::vector<Surface>& patches, const MergeRequest& request);
+
 // Merges patches. A row or grid whose last edges meet its first edges becomes periodic with the requested
 // continuity, or stays open if that fails. If a chosen edge, or one of the nearest ends of two tubes, is a
 // pole, the pole is cut off and a bridge joins the tubes. Bridges may fold only if some chosen pair has a

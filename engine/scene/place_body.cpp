@@ -64,19 +64,29 @@ void map_points(Body& body, const Map& map) {
   body.mesh_pose = {};
 }
 
+// Returns the mirrored range of fractions of a turn. Points at the seam and on the axis have the fraction 0,
+// as before.
+Range<double> reversed_turn(const Range<double>& around) {
+  if (around.low == 0.0 && around.high == 1.0) return around;
+  constexpr double beyond_seam = 1e-9;
+  return {around.high == 1.0 ? beyond_seam : 1.0 - around.high, around.low == 0.0 ? 0.0 : 1.0 - around.low};
+}
+
 // Reverses u of a body's surface, which flips its normals, with everything that is given by parameters.
 void reverse_u(Body& body) {
   const KnotVector knots = body.surface.u;
-  const auto reversed_u = [&](double u) { return knots.domain_start() + knots.domain_end() - u; };
+  const auto reversed_u = [&](double u) {
+    return std::clamp(knots.domain_start() + knots.domain_end() - u, knots.domain_start(),
+                      knots.domain_end());
+  };
   body.surface = reversed(body.surface, Direction::u);
   for (TrimLoop& loop : body.trims) loop = reversed(loop, Direction::u, knots);
   for (Vector2& corner : body.rim) corner.x() = reversed_u(corner.x());
   for (Load& load : body.loads) {
     if (auto* const point = std::get_if<PointLoad>(&load)) point->u = reversed_u(point->u);
   }
-  for_each_region(body, [](BodyRegion& region) {
-    region.around = {1.0 - region.around.high, 1.0 - region.around.low};
-  });
+  if (!knots.is_periodic()) return;  // all points of an open sheet have the fraction 0
+  for_each_region(body, [](BodyRegion& region) { region.around = reversed_turn(region.around); });
 }
 
 void flip_triangles(Body& body) {

@@ -57,7 +57,34 @@ void ReachRing::update(const TessellatedSurface& surface, const Vector3& centre_
                 across = normal_of(triangle).normalized().cross(along);
   for (std::size_t k = 0; k < ends_m_.size(); ++k) {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / directions;
-    ends_m_[k] = walk(surface, *start, std::cos(angle) * along + std::sin(angle) * across, radius_m);
+    trails_[k].clear();
+    ends_m_[k] =
+        walk(surface, *start, std::cos(angle) * along + std::sin(angle) * across, radius_m, trails_[k]);
+  }
+  drop_overtaken(radius_m);
+}
+
+// Drops the ends that another line has reached by a shorter way, as behind a bar around which lines meet.
+void ReachRing::drop_overtaken(double radius_m) {
+  // Lines beside each other end within a fifteenth of the radius of each other, and ways over a curved
+  // surface are a little longer than straight ones.
+  constexpr double shorter = 0.9;
+  // Points whose normals differ more are compared with nearer ones only, because a straight way may lead
+  // through the body.
+  constexpr double same_side = 0.9;
+  const auto is_overtaken = [&](std::size_t k) {
+    const TrailPoint& end = trails_[k].back();
+    return std::any_of(trails_.begin(), trails_.end(), [&](const std::vector<TrailPoint>& trail) {
+      return std::any_of(trail.begin(), trail.end(), [&](const TrailPoint& point) {
+        return point.normal.dot(end.normal) > same_side &&
+               point.way_m + (point.position_m - end.position_m).norm() < shorter * radius_m;
+      });
+    });
+  };
+  std::array<bool, directions> overtaken{};
+  for (std::size_t k = 0; k < ends_m_.size(); ++k) overtaken[k] = ends_m_[k] && is_overtaken(k);
+  for (std::size_t k = 0; k < ends_m_.size(); ++k) {
+    if (overtaken[k]) ends_m_[k].reset();
   }
 }
 
@@ -75,36 +102,22 @@ void ReachRing::connect(const TessellatedSurface& surface) {
   topology_version_ = surface.topology_version();
 }
 
-// Returns the place nearest to a point on the triangles around the nearest vertex and its neighbours.
+// Returns the place on the triangles that is nearest to a point.
 std::optional<ReachRing::Place> ReachRing::find_place(const TessellatedSurface& surface,
-                                                      const Vector3& point_m) const {
-  const std::vector<std::uint32_t>& corners = surface.indices();
-  std::uint32_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) {
-    if (starts_[v] == starts_[v + 1]) continue;  // a sample outside the trims
-    const double square = (vertex_position(surface, v) - point_m).squaredNorm();
-    if (!(square < least)) continue;
-    least = square;
-    nearest = v;
-  }
+                                                      const Vector3& point_m) {
   std::optional<Place> place;
-  least = std::numeric_limits<double>::infinity();
-  const auto offer = [&](std::uint32_t first) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::uint32_t first = 0; first + 2 < surface.indices().size(); first += 3) {
     const Triangle triangle = triangle_at(surface, first);
-    if (!has_area(triangle)) return;
+    // A triangle is within its longest side of each of its corners.
+    const double side_m = std::sqrt(
+        std::max({squared_length(triangle, 0), squared_length(triangle, 1), squared_length(triangle, 2)}));
+    if ((triangle[0] - point_m).norm() - side_m > least_m || !has_area(triangle)) continue;
     const Vector3 on_triangle = nearest_on_triangle(triangle[0], triangle[1], triangle[2], point_m).point;
-    const double square = (on_triangle - point_m).squaredNorm();
-    if (!(square < least)) return;
-    least = square;
+    const double distance_m = (on_triangle - point_m).norm();
+    if (!(distance_m < least_m)) continue;
+    least_m = distance_m;
     place = Place{first, on_triangle};
-  };
-  if (starts_[nearest] == starts_[nearest + 1]) return std::nullopt;
-  for (std::uint32_t t = starts_[nearest]; t < starts_[nearest + 1]; ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = corners[triangles_[t] + k];
-      std::for_each(triangles_.begin() + starts_[vertex], triangles_.begin() + starts_[vertex + 1], offer);
-    }
   }
   return place;
 }
@@ -128,8 +141,10 @@ std::optional<ReachRing::Entry> ReachRing::cross(const std::vector<std::uint32_t
 // Follows a line that is straight in every triangle and keeps its angle to the sides that it crosses. Returns
 // its end; nothing if it leaves the surface.
 std::optional<Vector3> ReachRing::walk(const TessellatedSurface& surface, const Place& start,
-                                       Vector3 direction, double length_m) const {
+                                       Vector3 direction, double length_m,
+                                       std::vector<TrailPoint>& trail) const {
   const std::vector<std::uint32_t>& corners = surface.indices();
+  const double whole_m = length_m, step_m = whole_m / trail_points;
   Vector3 point_m = start.point_m;
   std::uint32_t at = start.triangle;
   int entered = -1;
@@ -159,8 +174,17 @@ std::optional<Vector3> ReachRing::walk(const TessellatedSurface& surface, const 
         along = one;
       }
       if (side < 0) return std::nullopt;
-      if (least_m >= length_m) return point_m + length_m * direction;
-      point_m += least_m * direction;
+      const double along_m = std::min(least_m, length_m);
+      const double way_m = whole_m - length_m;
+      for (double next_m = step_m * (std::floor(way_m / step_m) + 1.0); next_m < way_m + along_m;
+           next_m += step_m) {
+        trail.push_back({point_m + (next_m - way_m) * direction, normal, next_m});
+      }
+      point_m += along_m * direction;
+      if (least_m >= length_m) {
+        trail.push_back({point_m, normal, whole_m});
+        return point_m;
+      }
       length_m -= least_m;
     } else {
       // The line passes between the two long sides of a triangle without area.

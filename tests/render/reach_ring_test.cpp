@@ -84,6 +84,25 @@ TEST(ReachRing, StaysOnItsSideOfAPlate) {
   }
 }
 
+// Around a bar, lines meet behind it. What they reach by a longer way is left out.
+TEST(ReachRing, LeavesOutWhatIsNearerTheOtherWay) {
+  constexpr double radius_m = 0.005, reach_m = 0.02;
+  const TessellatedSurface bar =
+      tessellated_shape(cylinder_shape({.radius_m = radius_m, .height_m = 0.1, .rounding_m = 0.001}));
+  const Vector3 centre_m(radius_m, 0.0, 0.0);
+  ReachRing ring;
+  ring.update(bar, centre_m, reach_m);
+  int kept = 0;
+  for (const std::optional<Vector3>& end : ring.ends_m()) {
+    if (!end) continue;
+    ++kept;
+    const double around_m = radius_m * std::abs(std::atan2(end->z(), end->x()));
+    EXPECT_NEAR(std::hypot(around_m, end->y()), reach_m, 0.12 * reach_m);
+  }
+  EXPECT_GT(kept, ReachRing::directions / 3);
+  EXPECT_LT(kept, ReachRing::directions);
+}
+
 TEST(ReachRing, EndsAtTheEdgeOfASheet) {
   const TessellatedSurface sheet = tessellated_shape(sheet_shape(0.1, 0.06));
   const Vector3 centre_m(0.02, 0.0, 0.025);
