@@ -26,11 +26,11 @@ class EditHistory {
   static constexpr int release_ticks = 50;
 
   // Largest number of stored shapes. The memory limit allows fewer shapes of large bodies, but at least 3.
-  static constexpr std::size_t shape_limit = 64;
+  static constexpr std::size_t shape_limit = 128;
   static constexpr std::size_t memory_limit_bytes = std::size_t{64} << 20;
   // Largest number of stored builds. The memory limit allows fewer builds of large bodies, but at least 2.
   // The oldest steps go first.
-  static constexpr std::size_t build_limit = 24;
+  static constexpr std::size_t build_limit = 64;
   static constexpr std::size_t build_memory_limit_bytes = std::size_t{512} << 20;
 
   explicit EditHistory(const Simulation& simulation);
