@@ -12,8 +12,9 @@ void add_json_option(OptionSet parser, bool& json) {
   parser.add_flag("--json", json, "Print one JSON object instead of lines for people");
 }
 
-CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, const std::string& help) {
-  const auto parse = [&out](const std::string& text) -> Status {
+CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, const std::string& help,
+                                  const std::string& option) {
+  const auto parse = [&out, option](const std::string& text) -> Status {
     out = text;
     if (format_from_name(out) == FileFormat::document) return {};
     return Error{
@@ -21,9 +22,9 @@ CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, 
         "'" + excerpt(text) +
             "' does not end in .json, as documents must; use `spoonbill convert` to write CAD files and "
             "meshes",
-        "--out"};
+        option};
   };
-  return parser.add_parsed("--out", parse, help).show_as("FILE");
+  return parser.add_parsed(option, parse, help).show_as("FILE");
 }
 
 void add_force_option(OptionSet parser, OutputOptions& how) {

@@ -50,10 +50,11 @@ CommandEntry add_read_points(OptionSet root);
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);
 
-// --out: the document to write. Its name must end in .json; any other ending is a usage error, because it
-// would suggest a file of another format.
+// --out or another option: the document to write. Its name must end in .json; any other ending is a usage
+// error, because it would suggest a file of another format.
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
-                                  const std::string& help = "Document to write (.json)");
+                                  const std::string& help = "Document to write (.json)",
+                                  const std::string& option = "--out");
 
 // --force: replaces the output even if it is read-only.
 void add_force_option(OptionSet parser, OutputOptions& how);

@@ -34,6 +34,7 @@ struct ReplayOptions {
   FrameOptions frames;
   std::filesystem::path video;
   std::filesystem::path rerecord;
+  std::filesystem::path saved;  // document of the last state
   std::filesystem::path log;
   InstructionSet instruction_set = best_instruction_set();
   bool no_frames = false;
@@ -292,6 +293,11 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
     if (Status committed = log->commit(); !committed) return committed;
     facts.add("Log", options.log.string(), "log", options.log.string());
   }
+  if (!options.saved.empty()) {
+    const Document document = make_session_document(session.value());
+    if (Status written = write_document(document, options.saved, options.how); !written) return written;
+    facts.add("Saved", options.saved.string(), "saved", options.saved.string());
+  }
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
   facts.add("", "", "shape_hash", hash_text(shape_hash(session->simulation)));
@@ -302,12 +308,14 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
 }
 
 Status replay_file(const ReplayOptions& options, Console& console) {
-  for (const auto& out : {options.rerecord, options.video, options.log}) {
+  for (const auto& out : {options.rerecord, options.video, options.saved, options.log}) {
     if (Status checked = check_output(out, options.how); !checked) return checked;
   }
   const auto recording = read_recording(options.recording);
   if (!recording) return recording.error();
   if (Status checked = check_is_not_source(options.rerecord, options.recording, "--rerecord"); !checked)
+    return checked;
+  if (Status checked = check_is_not_source(options.saved, options.recording, "--save"); !checked)
     return checked;
   if (Status checked = check_is_not_source(options.log, options.recording, "--log"); !checked) return checked;
   if (!recording->notice.empty()) console.err << "spoonbill: " << one_line(recording->notice) << '\n';
@@ -344,6 +352,9 @@ CommandEntry add_replay(OptionSet root) {
       .add_option("--rerecord", options->rerecord,
                   "File for a new recording of the replay, with the same bytes as RECORDING; default: none")
       .show_as("FILE");
+  add_document_output(parser, options->saved,
+                      "Document to write (.json): the bodies as they are at the end; default: none",
+                      "--save");
   add_log_option(parser, options->log);
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);

@@ -30,5 +30,6 @@ def tube(degree, v_knots, points):
     }
 
 
-def write(document):
-    print(json.dumps(document, separators=(",", ":")))
+def write(document, file=None):
+    """Writes the document, to standard output by default."""
+    print(json.dumps(document, separators=(",", ":")), file=file)

@@ -62,6 +62,33 @@ std::string mark_script(const std::string& steps) {
          steps + R"({"hold_s": 0.1}]})";
 }
 
+// The tool presses into the handle; what --save writes is what a `save` at the last tick would.
+TEST(Replay, SavesTheShapeAtTheEnd) {
+  const Workplace place;
+  place.write("press.json", R"({
+    "spoonbill_script": 1, "model": "model.json",
+    "steps": [
+      {"start_mm": [50, 14, 0]}, {"command": "place_plane", "point_mm": [20, 0, 0], "normal": [1, 0, 0]},
+      {"move_to_mm": [50, 6, 0], "over_s": 0.2}, {"command": "save", "name": "end"}]})");
+  ASSERT_EQ(run({"record", place.text("press.json"), "--out", place.text("press.jsonl")}).code, exit_done);
+  const std::vector<std::string> replay{
+      "replay", place.text("press.jsonl"), "--out", place.text("out"), "--size", "96x64",
+      "--save", place.text("end.json")};
+  ASSERT_EQ(run(replay).code, exit_done);
+  const auto saved = read_document(place.path("end.json")),
+             marked = read_document(place.path("out/saved-end.json"));
+  ASSERT_TRUE(saved && marked);
+  const Surface &surface = saved->scene.bodies[0].surface, &expected = marked->scene.bodies[0].surface;
+  EXPECT_EQ(surface.net.y, expected.net.y);
+  EXPECT_NE(surface.net.y, read_document(place.path("model.json"))->scene.bodies[0].surface.net.y);
+  EXPECT_EQ(saved->scene.planes.size(), 1U);
+  EXPECT_EQ(run({"replay", place.text("press.jsonl"), "--no-frames", "--save", place.text("end.stl")}).code,
+            exit_wrong_use);
+  EXPECT_EQ(
+      run({"replay", place.text("press.jsonl"), "--no-frames", "--save", place.text("none/end.json")}).code,
+      exit_failed);
+}
+
 TEST(Replay, TakesAScreenshotBetweenTheFramesItDraws) {
   const Workplace place;
   place.write("marks.json", mark_script(R"({"command": "screenshot", "name": "early"}, {"hold_s": 0.092},

@@ -367,19 +367,33 @@ Image model_picture(const std::string& model, const std::string& material, int w
 }
 
 TEST(ModelPictures, BentSpoon) {
-  compare_with_approved("bent-spoon", model_picture("bent-spoon", "", width_px, height_px));
+  compare_with_approved("spoon-bent", model_picture("spoon-bent", "", width_px, height_px));
 }
 
-TEST(ModelPictures, OneSpoonInTenMaterials) {
+ContactSheet two_columns() {
   ContactSheetLayout layout;
   layout.columns = 2;
   layout.cell_width_px = 640;
   layout.caption_px = 22;
   layout.caption_font_path = font_file;
-  ContactSheet sheet(layout);
+  return ContactSheet(layout);
+}
+
+// The spoons of section 5.1 of Pungotra et al. 2013.
+TEST(ModelPictures, SixSpoons) {
+  ContactSheet sheet = two_columns();
+  for (const char* model : {"spoon-original", "spoon-bent", "spoon-grip-bulge", "spoon-grip-dent",
+                            "spoon-thick", "spoon-rough"}) {
+    sheet.add(model_picture(model, "", 640, 360), model);
+  }
+  compare_with_approved("spoons", sheet.compose().value());
+}
+
+TEST(ModelPictures, OneSpoonInTenMaterials) {
+  ContactSheet sheet = two_columns();
   for (const char* material : {"modelling-clay", "wax", "steel-304", "aluminium-6061", "abs", "polypropylene",
                                "beech", "silicone-00-30", "gelatin-10-1", "foam"}) {
-    sheet.add(model_picture("bent-spoon", material, 640, 360), material);
+    sheet.add(model_picture("spoon-bent", material, 640, 360), material);
   }
   compare_with_approved("materials", sheet.compose().value());
 }
