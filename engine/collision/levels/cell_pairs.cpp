@@ -105,8 +105,7 @@ int ElementTree::add(const Node& range) {
 }
 
 void ElementTree::update(SurfaceLevels& levels) {
-  SPOONBILL_ASSERT_DEBUG(levels.surface().u.breakpoints().size() ==
-                         static_cast<std::size_t>(u_.elements()) + 1);
+  SPOONBILL_ASSERT_DEBUG(levels.bounds().elements_u() == u_.elements());
   levels.bounds().update(levels.surface().net);
   for (int e = 0; e < u_.elements(); ++e) update_strip(levels, e);
   join_boxes();
