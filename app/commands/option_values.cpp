@@ -256,20 +256,36 @@ Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t cou
   return lengths;
 }
 
+namespace {
+
+// Parses three values with commas between them. `parse` returns a value, or nothing for other text.
+template <class Parse>
+std::optional<Vector3> parse_three(std::string_view text, const Parse& parse) {
+  const auto parts = split_exactly<3>(text);
+  if (!parts) return std::nullopt;
+  Vector3 values;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto value = parse((*parts)[static_cast<std::size_t>(axis)]);
+    if (!value) return std::nullopt;
+    values[axis] = *value;
+  }
+  return values;
+}
+
+bool is_in_range(const Vector3& values, const Range<double>& range) {
+  return range.contains(values.x()) && range.contains(values.y()) && range.contains(values.z());
+}
+
+}  // namespace
+
 Result<Vector3> parse_position(std::string_view text) {
   const Error malformed{
       ErrorCode::malformed,
       "'" + excerpt(text, 80) +
           "' is not a position like 10mm,0,-5mm, of at most 100 m with units (mm, cm, m or in)"};
-  const auto parts = split_exactly<3>(text);
-  if (!parts) return malformed;
-  Vector3 position_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto length = parse_length_m((*parts)[static_cast<std::size_t>(axis)]);
-    if (!length || !position_range_m.contains(*length)) return malformed;
-    position_m[axis] = *length;
-  }
-  return position_m;
+  const auto position_m = parse_three(text, [](std::string_view part) { return parse_length_m(part); });
+  if (!position_m || !is_in_range(*position_m, position_range_m)) return malformed;
+  return *position_m;
 }
 
 Result<Vector3> parse_axis(std::string_view text) {
@@ -278,17 +294,11 @@ Result<Vector3> parse_axis(std::string_view text) {
   }
   const Error malformed{ErrorCode::malformed,
                         "'" + excerpt(text, 80) + "' is not x, y, z or a direction like 0,1,-1"};
-  const auto parts = split_exactly<3>(text);
-  if (!parts) return malformed;
-  Vector3 direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto number = parse_plain_number((*parts)[static_cast<std::size_t>(axis)]);
-    if (!number) return malformed;
-    direction[axis] = *number;
-  }
-  const double length = direction.stableNorm();
+  const auto direction = parse_three(text, [](std::string_view part) { return parse_plain_number(part); });
+  if (!direction) return malformed;
+  const double length = direction->stableNorm();
   if (!(length > 1e-100 && length < 1e100)) return malformed;
-  return Vector3(direction / length);
+  return Vector3(*direction / length);
 }
 
 Result<Vector3> parse_scale(std::string_view text, Range<double> range) {
@@ -297,15 +307,9 @@ Result<Vector3> parse_scale(std::string_view text, Range<double> range) {
   const Error malformed{ErrorCode::out_of_range,
                         "'" + excerpt(text, 80) + "' is not a factor like 1.2, or three like 1.2,1,1, from " +
                             number_text(range.low) + " to " + number_text(range.high)};
-  const auto parts = split_exactly<3>(text);
-  if (!parts) return malformed;
-  Vector3 factors;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto factor = parse_plain_number((*parts)[static_cast<std::size_t>(axis)]);
-    if (!factor || !range.contains(*factor)) return malformed;
-    factors[axis] = *factor;
-  }
-  return factors;
+  const auto factors = parse_three(text, [](std::string_view part) { return parse_plain_number(part); });
+  if (!factors || !is_in_range(*factors, range)) return malformed;
+  return *factors;
 }
 
 Result<Pose> parse_pose(std::string_view text) {

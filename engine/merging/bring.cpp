@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -87,10 +88,10 @@ Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
   if (from.dot(to) > opposite_cosine) return Quaternion::FromTwoVectors(from, to);
   const bool is_vertical = std::abs(to.y()) > 0.99;
   const Vector3 up = is_vertical ? Vector3::UnitZ() : Vector3::UnitY();
-  return Quaternion(Eigen::AngleAxisd(3.14159265358979323846, (up - up.dot(to) * to).normalized()));
+  return Quaternion(Eigen::AngleAxisd(std::numbers::pi, (up - up.dot(to) * to).normalized()));
 }
 
-// Rings in the plane across an axis, as complex numbers would be.
+// Points of a ring in the plane across an axis.
 using PlaneRing = std::vector<Vector2>;
 
 PlaneRing project(const std::vector<Vector3>& ring_m, const Vector3& one, const Vector3& other) {

@@ -25,7 +25,7 @@ struct Bringing {
 // - roll: the rings of two tubes match best in shape, where several rolls match by the smallest; the normals
 //   of other patches agree. The ring of a pole is where the sides become straight; without straight sides,
 //   the roll is 0.
-// Fails for an edge without a direction, and for a tube and a patch that is none.
+// Fails for an edge without a direction, and for a tube with a patch that is not a tube.
 Result<Bringing> bring(const Surface& still, Side still_side, const Surface& moved, Side moved_side);
 
 // A part that bring_parts() has moved, and the edges that meet.
@@ -37,7 +37,7 @@ struct BroughtPart {
 // Moves parts until each meets one that does not move any more; the first part stays. The chosen edges meet,
 // in their order; without any, each part meets a part before it at the nearest ends of tubes. Fails like
 // check_merge() and bring(), for a part that no chosen edges connect with the first, and for parts without
-// chosen edges that are no tubes.
+// chosen edges that are not tubes.
 Result<std::vector<BroughtPart>> bring_parts(std::vector<Surface>& parts, const MergeRequest& request);
 
 }  // namespace spoonbill

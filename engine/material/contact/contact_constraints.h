@@ -164,6 +164,7 @@ class ContactConstraints {
     // The following four values are those of the last start(); they stay the same until the tool moves.
     Vector3 position_m = Vector3::Zero();  // position of the constrained point
     // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere, and for grips.
+    // A hold keeps the normal with which it was added.
     Vector3 normal = Vector3::Zero();
     double gap_m = 0.0;  // distance of a pushed point from the tool; negative inside the tool
     // Velocity change of the point per impulse, 1/kg; 0 if the body does not yield. For a rigid body, it is

@@ -126,10 +126,10 @@ TEST(SelfProximity, OfARefinedSurfaceKnowsHowFarItHasMovedSinceTheLastSearch) {
   const Surface rest = torus(0), finer_rest = with_halved_elements(rest);
   const NestedGrid nested = nested_grid_of(rest), finer_nested = nested_grid_of(finer_rest);
   SelfProximity coarse(nested, rest, cell_m), finer(finer_nested, finer_rest, cell_m),
-      anew(finer_nested, finer_rest, cell_m);
+      fresh(finer_nested, finer_rest, cell_m);
   const double apart_m = find_clear_gap_m(coarse, shape), near_m = apart_m - 0.9 * cell_m;
   const double too_near_m = apart_m - 1.1 * cell_m;
-  ASSERT_LT(too_near_m, find_clear_gap_m(anew, refined));
+  ASSERT_LT(too_near_m, find_clear_gap_m(fresh, refined));
 
   finer.carry_over(coarse, shape(near_m).net, refined(near_m).net);
   EXPECT_TRUE(finer.is_clear());
