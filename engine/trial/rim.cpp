@@ -49,16 +49,32 @@ std::optional<Rim> Rim::on_surface(const Surface& surface, const std::vector<Vec
   rim.centre_m_ /= length;
   rim.normal_ = area.normalized();
   if (rim.normal_.dot(up) < 0.0) rim.normal_ = -rim.normal_;
-  rim.across_ = rim.normal_.unitOrthogonal();
+  const Vector3 first = points.front() - rim.centre_m_;
+  const Vector3 level = first - rim.normal_.dot(first) * rim.normal_;
+  rim.across_ = level.norm() > coincident_m ? Vector3(level.normalized()) : rim.normal_.unitOrthogonal();
   rim.along_ = rim.normal_.cross(rim.across_);
   for (const Vector3& point : points) rim.outline_m_.push_back(rim.projected(point));
   rim.box_m_ = box_about(rim.outline_m_);
+  rim.inner_radius_m_ = std::max(0.0, rim.margin_m(rim.centre_m_));
   return rim;
 }
 
 bool Rim::is_outside(const Vector3& point_m) const {
   const Vector2 point = projected(point_m);
+  if (point.squaredNorm() < inner_radius_m_ * inner_radius_m_) return false;
   return box_m_.squared_distance(point) > 0.0 || !is_inside(point, outline_m_);
+}
+
+double Rim::margin_m(const Vector3& point_m) const {
+  const Vector2 point = projected(point_m);
+  double nearest_m = infinity;
+  for (std::size_t k = 0; k < outline_m_.size(); ++k) {
+    const Vector2 &from = outline_m_[k], &to = outline_m_[(k + 1) % outline_m_.size()];
+    const Vector2 side = to - from;
+    const double share = std::clamp((point - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
+    nearest_m = std::min(nearest_m, (point - from - share * side).norm());
+  }
+  return is_outside(point_m) ? -nearest_m : nearest_m;
 }
 
 }  // namespace spoonbill

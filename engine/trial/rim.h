@@ -20,10 +20,16 @@ class Rim {
                                        const Vector3& up);
 
   const Vector3& normal() const { return normal_; }
+  const Vector3& centre_m() const { return centre_m_; }
   // Returns the height of a point above the plane of the rim, which goes through its centre, m.
   double height_m(const Vector3& point_m) const { return normal_.dot(point_m - centre_m_); }
+  // Returns the offset of a point from the rim's centre in the rim's plane: towards the first corner of the
+  // rim, and to the left of that seen against the normal.
+  Vector2 from_centre_m(const Vector3& point_m) const { return projected(point_m); }
   // Returns true if a point, projected along the normal, is outside the rim.
   bool is_outside(const Vector3& point_m) const;
+  // Returns the distance of a point from the rim, both projected along the normal, m; negative outside.
+  double margin_m(const Vector3& point_m) const;
 
  private:
   Rim() = default;
@@ -34,7 +40,8 @@ class Rim {
   Vector3 centre_m_ = Vector3::Zero(), normal_ = Vector3::UnitY(), across_ = Vector3::UnitX(),
           along_ = Vector3::UnitZ();
   std::vector<Vector2> outline_m_;
-  Box2 box_m_;  // around the outline
+  Box2 box_m_;                   // around the outline
+  double inner_radius_m_ = 0.0;  // of a circle around the centre that is inside the outline
 };
 
 }  // namespace spoonbill

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/simulation/body_hold.h"
-
 namespace spoonbill {
 namespace {
 
@@ -49,24 +47,35 @@ struct Border {
 };
 
 // Sets the fractions of a deformable body.
-void measure_fractions(const Border& border, const SpringLattice& lattice, Spill& spill) {
-  double mass_kg = 0.0, outside_kg = 0.0, spilled_kg = 0.0;
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    const auto node_kg = static_cast<double>(lattice.mass(n));
-    const Vector3 node = lattice.position(n);
-    mass_kg += node_kg;
-    if (!border.is_outside(node)) continue;
-    outside_kg += node_kg;
-    if (border.is_below(node)) spilled_kg += node_kg;
-  }
-  spill.outside_fraction = outside_kg / mass_kg;
-  spill.spilled_fraction = spilled_kg / mass_kg;
+void measure_fractions(const Border& border, const MassPoints& points, const SpringLattice& lattice,
+                       Spill& spill) {
+  double all = 0.0, outside = 0.0, spilled = 0.0;
+  Vector2 sum_m = Vector2::Zero();
+  points.for_each(lattice, [&](const Vector3& point, double fraction) {
+    all += fraction;
+    if (!border.is_outside(point)) return;
+    outside += fraction;
+    sum_m += fraction * border.rim.from_centre_m(point);
+    if (border.is_below(point)) spilled += fraction;
+  });
+  spill.outside_m = outside > 0.0 ? Vector2(sum_m / outside) : Vector2(Vector2::Zero());
+  spill.outside_fraction = outside / all;
+  spill.spilled_fraction = spilled / all;
+}
+
+Vector3 find_centre_m(const MassPoints& points, const SpringLattice& lattice) {
+  Vector3 centre = Vector3::Zero();
+  points.for_each(lattice, [&](const Vector3& point, double fraction) { centre += fraction * point; });
+  return centre;
 }
 
 }  // namespace
 
 SpillWatch::SpillWatch(const Scene& scene)
-    : bearer_(find_bearer(scene)), is_watched_(scene.bodies.size()), spills_(scene.bodies.size()) {
+    : bearer_(find_bearer(scene)),
+      is_watched_(scene.bodies.size()),
+      spills_(scene.bodies.size()),
+      points_(scene.bodies.size()) {
   if (bearer_ < 0) return;
   const Vector3& gravity = scene.sculpting.gravity_m_per_s2;
   if (!gravity.isZero(0.0)) up_ = -gravity.normalized();
@@ -98,17 +107,22 @@ void SpillWatch::measure(const Simulation& simulation, double time_s) {
     if (!is_watched_[b]) continue;
     const int body = static_cast<int>(b);
     const RigidDynamics* const rigid = simulation.rigid_dynamics(body);
-    const Vector3 centre = rigid ? rigid->centre_m() : find_mass_centre(simulation.lattice(body)).position_m;
+    if (!rigid && !points_[b]) {
+      points_[b].emplace(simulation.lattice(body), simulation.scene().bodies[b].surface);
+    }
+    const Vector3 centre = rigid ? rigid->centre_m() : find_centre_m(*points_[b], simulation.lattice(body));
     const bool is_out = border.is_outside(centre);
     const bool is_borne = !is_out && up_.dot(centre) > border.lowest_m;
     if (!spills_[b] && !is_borne) continue;
     if (!spills_[b]) spills_[b] = Spill();
     Spill& spill = *spills_[b];
+    spill.margin_m = rim->margin_m(centre);
     if (rigid) {
+      spill.outside_m = is_out ? rim->from_centre_m(centre) : Vector2::Zero();
       spill.outside_fraction = is_out ? 1.0 : 0.0;
       spill.spilled_fraction = is_out && border.is_below(centre) ? 1.0 : 0.0;
     } else {
-      measure_fractions(border, simulation.lattice(body), spill);
+      measure_fractions(border, *points_[b], simulation.lattice(body), spill);
     }
     if (!spill.first_spill_s && spill.spilled_fraction > spill_limit_fraction) spill.first_spill_s = time_s;
     if (!spill.left_s && is_out) spill.left_s = time_s;

@@ -7,6 +7,7 @@
 
 #include "engine/scene/scene.h"
 #include "engine/simulation/simulation.h"
+#include "engine/trial/mass_points.h"
 #include "engine/trial/rim.h"
 
 namespace spoonbill {
@@ -15,12 +16,16 @@ namespace spoonbill {
 inline constexpr double spill_limit_fraction = 0.01;
 
 // Mass of a body outside the rim, as fractions of its mass, and times. The rim's plane turns with the body
-// that has the rim. Masses are those of nodes, so a fraction is resolved to the mass of a node. A rigid body
-// counts as a whole, at its centre of mass. If the rim is steeper than 78 degrees, all that is lower than the
-// body with the rim counts as outside and below.
+// that has the rim. A deformable body counts by its MassPoints, a rigid body as a whole, at its centre of
+// mass. If the rim is steeper than 78 degrees, all that is lower than the body with the rim counts as outside
+// and below.
 struct Spill {
-  double outside_fraction = 0.0;        // outside the rim, seen along the normal of its plane
-  double spilled_fraction = 0.0;        // outside the rim and below its plane
+  double outside_fraction = 0.0;  // outside the rim, seen along the normal of its plane
+  double spilled_fraction = 0.0;  // outside the rim and below its plane
+  double margin_m = 0.0;          // of the centre of mass to the rim (Rim::margin_m())
+  // Centre of the mass outside, from the centre of the rim in the rim's plane: towards the first corner of
+  // the rim, and to the left of that seen from above. Zero if nothing is outside.
+  Vector2 outside_m = Vector2::Zero();
   std::optional<double> first_spill_s;  // time at which it first exceeded spill_limit_fraction
   std::optional<double> left_s;         // time at which the centre of mass was first outside the rim
 };
@@ -46,6 +51,7 @@ class SpillWatch {
   Vector3 up_ = Vector3::UnitY(), normal_ = Vector3::UnitY();
   std::vector<bool> is_watched_;  // by body
   std::vector<std::optional<Spill>> spills_;
+  std::vector<std::optional<MassPoints>> points_;  // by body; empty until first needed
   std::uint64_t calls_ = 0;
 };
 
