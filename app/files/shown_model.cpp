@@ -21,12 +21,6 @@ namespace {
 // Smallest size of a model that can be shown: the diagonal of the box around it.
 constexpr double smallest_shown_m = 1e-6;
 
-Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& file) {
-  auto snapshot = make_scene_snapshot(scene);
-  if (!snapshot) return snapshot.error().in(file.string());
-  return ShownModel{std::move(snapshot).value(), scene.ground, {}};
-}
-
 Result<ShownModel> show_document(const std::filesystem::path& file) {
   const auto document = read_document_file(file);
   if (!document) return document.error();
@@ -102,6 +96,12 @@ Result<ShownModel> show_scan(const std::filesystem::path& file, const std::optio
 }
 
 }  // namespace
+
+Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& source) {
+  auto snapshot = make_scene_snapshot(scene);
+  if (!snapshot) return snapshot.error().in(source.string());
+  return ShownModel{std::move(snapshot).value(), scene.ground, {}};
+}
 
 Result<ShownModel> read_shown_model(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
                                     const Progress& progress) {

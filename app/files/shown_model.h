@@ -31,4 +31,7 @@ struct ShownModel {
 Result<ShownModel> read_shown_model(const std::filesystem::path& file, const std::optional<LengthUnit>& unit,
                                     const Progress& progress);
 
+// Returns the bodies of a scene as they are. `source` names their file in messages.
+Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& source);
+
 }  // namespace spoonbill

@@ -67,6 +67,7 @@ WINDOW_CASES = {"handle, full quality": ("spoon-handle", "full", (900, 250)),
 WINDOW = ("frames of `spoonbill edit` at 1280x720 with the panel, on a virtual display, while a mouse presses and stirs "
           "beside the 1 kHz loop, 15 s; ")
 START_CASES = {"version": ["--version"], "info": ["info", "assets/models/trimmed-plate.json"]}
+STUDY_TILTS = (-30, -20, -10, 0, 10, 20, 30)
 START = "from starting the program to its end, the median of 21; "
 LATE = "p99 of how late a tick begins, as above; "
 
@@ -160,6 +161,9 @@ FIGURES = (
            LIVE + "resident memory, from 10 s after the beginning to the end"),
     Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill --version`", "version"),
     Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill info` of the trimmed plate", "info"),
+    Figure("study_case_s", "s", "ours", "at most", 3,
+           "a study of one case, gelatin on the original spoon at a friction of 0.1: processor time of the whole "
+           "program, the longest of seven tilts"),
 )
 
 NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))

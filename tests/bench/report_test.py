@@ -45,6 +45,9 @@ class MadeUp:
     def start(self, _arguments):
         return [20.0, 30.0, 90.0]
 
+    def study_case(self, tilt_deg):
+        return 1.0 + abs(tilt_deg) / 20
+
     def loop(self, load):
         ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
         return ours, {"ticks": 10000, "missed": 5, "p99_us": 60}

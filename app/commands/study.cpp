@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/option_set.h"
+#include "app/report/fact_sheet.h"
+#include "app/study/case_crew.h"
+#include "app/study/case_file.h"
+#include "app/study/next_cases.h"
+#include "app/study/slurm.h"
+#include "app/study/study_page.h"
+#include "app/study/study_parts.h"
+#include "app/study/study_pictures.h"
+#include "app/study/study_plan.h"
+#include "app/study/study_summary.h"
+#include "app/study/study_tables.h"
+#include "engine/base/file.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> worker_range{1, 256};
+// A task of Slurm then takes about a minute.
+constexpr std::size_t cases_a_task = 24;
+
+struct StudyOptions {
+  std::vector<std::filesystem::path> spoons;
+  std::filesystem::path file, out;
+  int workers = 0;  // 0: one for each processor
+  std::optional<StudyPart> part;
+  bool on_slurm = false;
+  bool merges_only = false;
+  bool starts_anew = false;
+  bool progress = false;
+  bool json = false;
+};
+
+Error stopped_study(const std::filesystem::path& out, std::size_t cases) {
+  return {ErrorCode::cancelled, "stopped after " + std::to_string(cases) + " cases, which are kept in " +
+                                    out.string() + "; the same command goes on from there"};
+}
+
+Status make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (!std::filesystem::is_directory(folder)) {
+    return Error{ErrorCode::unwritable,
+                 folder.string() + ": the folder cannot be made: " + failure.message()};
+  }
+  return {};
+}
+
+int count_workers(const StudyOptions& options) {
+  const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return options.workers > 0 ? options.workers : processors;
+}
+
+Result<StudyPart> parse_part(const std::string& text) {
+  StudyPart part;
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, part.number);
+  if (number.ec == std::errc() && number.ptr != end && *number.ptr == '/') {
+    const auto count = std::from_chars(number.ptr + 1, end, part.count);
+    if (count.ec == std::errc() && count.ptr == end && part_count_range.contains(part.count) &&
+        Range<int>{1, part.count}.contains(part.number)) {
+      return part;
+    }
+  }
+  return Error{ErrorCode::malformed, "must be NUMBER/COUNT, such as 3/40"};
+}
+
+// Returns the program with the arguments of this study, as a task on another machine runs it.
+std::vector<std::string> task_command(const StudyOptions& options) {
+  std::error_code ignored;
+  std::vector<std::string> command{std::filesystem::read_symlink("/proc/self/exe", ignored).string(),
+                                   "study"};
+  for (const std::filesystem::path& spoon : options.spoons) {
+    command.push_back(std::filesystem::absolute(spoon).string());
+  }
+  if (!options.file.empty()) {
+    command.insert(command.end(), {"--file", std::filesystem::absolute(options.file).string()});
+  }
+  command.insert(command.end(), {"--out", std::filesystem::absolute(options.out).string(), "--workers", "1"});
+  return command;
+}
+
+// Runs rounds of cases as tasks of Slurm until none is needed.
+Status run_all_on_slurm(const StudyOptions& options, const StudyPlan& plan, CaseFile& file,
+                        const InterruptWatch& interrupt, Console& console) {
+  for (int round = 1;; ++round) {
+    // Parts that an earlier run of this command has left.
+    if (auto merged = merge_parts(options.out, plan, file); !merged) return merged.error();
+    const std::vector<StudyCase> cases = find_next_cases(plan, file.results());
+    if (cases.empty()) return {};
+    SlurmJob job{task_command(options), options.out, 1};
+    job.count = static_cast<int>((cases.size() + cases_a_task - 1) / cases_a_task);
+    ProgressBar bar(console,
+                    "Round " + std::to_string(round) + ", " + std::to_string(cases.size()) + " cases",
+                    options.progress);
+    const auto show = [&](int done) {
+      bar.show(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(job.count));
+    };
+    if (Status ran = run_on_slurm(job, show, [&] { return interrupt.requested(); }); !ran) return ran;
+    if (auto merged = merge_parts(options.out, plan, file); !merged) return merged.error();
+  }
+}
+
+// Runs rounds of cases until none is needed.
+Status run_all_cases(const StudyOptions& options, const StudyPlan& plan, CaseFile& file,
+                     const InterruptWatch& interrupt, Console& console) {
+  // Parts that tasks have done by this command's --part.
+  if (auto merged = merge_parts(options.out, plan, file); !merged) return merged.error();
+  const int workers = count_workers(options);
+  for (int round = 1;; ++round) {
+    const std::vector<StudyCase> cases = find_next_cases(plan, file.results());
+    if (cases.empty()) return {};
+    ProgressBar bar(console,
+                    "Round " + std::to_string(round) + ", " + std::to_string(cases.size()) + " cases",
+                    options.progress);
+    std::uint64_t done = 0;
+    const auto receive = [&](const StudyCase& study_case, const CaseResult& result) {
+      bar.show(++done, cases.size());
+      return file.add(study_case, result);
+    };
+    if (Status ran = run_cases(plan, cases, workers, receive, [&] { return interrupt.requested(); }); !ran) {
+      return ran;
+    }
+  }
+}
+
+Result<std::vector<StudyPicture>> make_pictures(const StudyOptions& options, const StudyPlan& plan,
+                                                const InterruptWatch& interrupt, Console& console) {
+  std::vector<StudyPicture> pictures;
+  const std::vector<StudyCase> cases = list_pictured_cases(plan);
+  ProgressBar bar(console, "Drawing", options.progress);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    auto picture = make_study_picture(plan, cases[k], [&] { return interrupt.requested(); });
+    bar.show(k + 1, cases.size());
+    if (!picture && picture.error().code == ErrorCode::not_converged) continue;  // the report lists it
+    if (!picture) return picture.error();
+    pictures.push_back(std::move(picture).value());
+  }
+  return pictures;
+}
+
+Status write_report(const std::filesystem::path& out, const StudyPlan& plan, const CaseResults& results,
+                    const std::vector<StudyPicture>& pictures, const Json& content,
+                    const StudySummary& summary) {
+  const auto page = make_study_page(plan, results, summary, pictures);
+  if (!page) return page.error();
+  const OutputOptions how{NamedBy::program, false};
+  for (const auto& [name, text] : {std::pair<const char*, std::string>{"study.html", page.value()},
+                                   {"study.json", content.dump(1) + "\n"},
+                                   {"cases.csv", cases_csv(results)}}) {
+    if (Status written = write_file(out / name, text, Durability::later, how); !written) return written;
+  }
+  for (const StudyPicture& picture : pictures) {
+    if (Status written = write_file(out / picture.file, picture.png, Durability::later, how); !written) {
+      return written;
+    }
+  }
+  return flush_to_disk(out);
+}
+
+void add_facts(FactSheet& facts, const StudyOptions& options, const CaseResults& results,
+               const StudySummary& summary, const Json& content) {
+  facts.add("Cases", std::to_string(results.size()), "cases", results.size());
+  facts.add("", "", "needed", 0);
+  facts.add("Not judged", std::to_string(summary.failures.size()), "not_judged", summary.failures.size());
+  facts.add("Repeats",
+            std::to_string(summary.trust.repeats) + ", " +
+                std::to_string(summary.trust.disagreements.size()) + " with another verdict",
+            "", nullptr);
+  facts.add("", "", "trust", content["trust"]);
+  facts.add("", "", "series", content["series"]);
+  facts.add("Report", (options.out / "study.html").string(), "report", (options.out / "study.html").string());
+}
+
+Status study(const StudyOptions& options, Console& console) {
+  const auto plan = make_study_plan(options.spoons, options.file);
+  if (!plan) return plan.error();
+  if (Status made = make_folder(options.out); !made) return made;
+  InterruptWatch interrupt;
+  if (options.part) {
+    const auto is_stopped = [&] { return interrupt.requested(); };
+    Status ran = run_part(options.out, plan.value(), *options.part, count_workers(options), is_stopped);
+    if (!ran && ran.error().code == ErrorCode::cancelled) interrupt.answer();
+    return ran;
+  }
+  auto file = CaseFile::open(options.out, plan_to_json(plan.value()), options.starts_anew);
+  if (!file) return file.error();
+  const auto stopped = [&](const Error& error) -> Error {
+    if (error.code != ErrorCode::cancelled) return error;
+    interrupt.answer();
+    return stopped_study(options.out, file->results().size());
+  };
+  if (options.merges_only) {
+    if (auto merged = merge_parts(options.out, plan.value(), file.value()); !merged) return merged.error();
+    const std::size_t needed = find_next_cases(plan.value(), file->results()).size();
+    if (needed > 0) {
+      FactSheet facts;
+      facts.add("Cases", std::to_string(file->results().size()), "cases", file->results().size());
+      facts.add("Needed next", std::to_string(needed), "needed", needed);
+      facts.print(console.out, options.json);
+      return {};
+    }
+  }
+  const auto run_all = options.on_slurm ? run_all_on_slurm : run_all_cases;
+  if (Status ran = run_all(options, plan.value(), file.value(), interrupt, console); !ran) {
+    return stopped(ran.error());
+  }
+  const auto pictures = make_pictures(options, plan.value(), interrupt, console);
+  if (!pictures) return stopped(pictures.error());
+  const StudySummary summary = summarise(plan.value(), file->results());
+  const auto content = study_json(plan.value(), file->results(), summary);
+  if (!content) return content.error();
+  if (Status written = write_report(options.out, plan.value(), file->results(), pictures.value(),
+                                    content.value(), summary);
+      !written) {
+    return written;
+  }
+  if (Status finished = file->finish(); !finished) return finished;
+  FactSheet facts;
+  add_facts(facts, options, file->results(), summary, content.value());
+  facts.print(console.out, options.json);
+  return {};
+}
+
+}  // namespace
+
+CommandEntry add_study(OptionSet root) {
+  auto options = std::make_shared<StudyOptions>();
+  const OptionSet parser = root.add_command("study", "Find the tilts at which food stays on spoons");
+  parser.set_footer(
+      "Lays food into the bowl of each spoon, tilts the spoon, and judges: holds, overhangs, leaves, or\n"
+      "undecided. Tries tilts from -30 to 30 degrees at three frictions with gelatin that is elastic and\n"
+      "gelatin that yields, then halves the steps between different verdicts until they are one degree, and\n"
+      "repeats the cases there with half the step and finer cells. Varies the food and the bowl of the "
+      "first\n"
+      "spoon, one thing at a time. A study file can change all of this.\n"
+      "Writes study.html, a report that needs no other file; study.json; cases.csv; and pictures. A study "
+      "that\n"
+      "was stopped goes on when the same command runs again.\n"
+      "A spoon is a document with one body that opens upwards; its bowl is found by itself.\n"
+      "Example: spoonbill study assets/models/spoon-original.json --out output/study");
+  parser.add_option("SPOON", options->spoons, "Documents of spoons (.json)").require();
+  parser.add_option("--file", options->file, "Study file (.json): foods, tilts, frictions, variations");
+  parser.add_option("--out", options->out, "Folder of the report").show_as("DIR").require();
+  parser
+      .add_option("--workers", options->workers,
+                  "Cases run at the same time; default: one for each processor")
+      .limit(worker_range);
+  parser.add_flag("--slurm", options->on_slurm,
+                  "Run the cases as tasks of Slurm, on machines that share the folder");
+  add_parsed_option(
+      parser, "--part", "NUMBER/COUNT", parse_part,
+      [options](const StudyPart& part) { options->part = part; },
+      "Run only this part of the cases needed next, and keep it for a run without this option to merge");
+  parser.add_flag("--merge", options->merges_only, "Merge the parts, and stop unless nothing else is needed");
+  parser.add_flag("--restart", options->starts_anew, "Leave out what the folder has from before");
+  parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
+  add_json_option(parser, options->json);
+  return {parser, [options](Console& console) { return study(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,53 @@
+#include "app/study/case_crew.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "engine/base/assert.h"
+
+namespace spoonbill {
+
+Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int workers,
+                 const CaseReceiver& receive, const std::function<bool()>& is_stopped) {
+  SPOONBILL_ASSERT(workers >= 1);
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> stopped{false};
+  std::mutex mutex;  // guards `ended`
+  std::condition_variable changed;
+  std::deque<std::pair<std::size_t, Result<CaseResult>>> ended;
+  const auto work = [&] {
+    const CaseWatch watch = [&](const Trial&, const Simulation&) { return !stopped.load(); };
+    for (std::size_t k = next++; k < cases.size() && !stopped.load(); k = next++) {
+      auto result = run_case(plan, cases[k], watch);
+      const std::lock_guard lock(mutex);
+      ended.emplace_back(k, std::move(result));
+      changed.notify_one();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int k = 0; k < workers; ++k) threads.emplace_back(work);
+  Status status;
+  for (std::size_t received = 0; received < cases.size() && status.ok();) {
+    std::unique_lock lock(mutex);
+    changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return !ended.empty(); });
+    if (is_stopped()) {
+      status = Error{ErrorCode::cancelled, "stopped"};
+    } else if (!ended.empty()) {
+      const auto [at, result] = std::move(ended.front());
+      ended.pop_front();
+      lock.unlock();
+      ++received;
+      status = result ? receive(cases[at], result.value()) : Status(result.error());
+    }
+  }
+  stopped = !status.ok();
+  for (std::thread& thread : threads) thread.join();
+  return status;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,151 @@
+#include "app/study/next_cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace spoonbill {
+namespace {
+
+constexpr double claim_bowl_depth = 0.5, claim_pitch_deg = -10.0;
+
+StudyCase varied_case(StudyCase base, StudyFactor factor, double value) {
+  switch (factor) {
+    case StudyFactor::helping:
+      base.helping = value;
+      break;
+    case StudyFactor::stiffness:
+      base.stiffness = value;
+      break;
+    case StudyFactor::depth:
+      base.bowl.depth = value;
+      break;
+    case StudyFactor::width:
+      base.bowl.width = value;
+      break;
+    case StudyFactor::curvature:
+      base.bowl.curvature = value;
+      break;
+    case StudyFactor::pitch:
+      base.pitch_deg = value;
+      break;
+  }
+  return base;
+}
+
+bool differ(const CaseResult& a, const CaseResult& b) {
+  return a.failure.empty() && b.failure.empty() && a.verdict != b.verdict;
+}
+
+// Calls `visit(low, high)` for neighbouring known tilts with different verdicts.
+template <class Visit>
+void for_each_change(const StudySeries& series, const CaseResults& results, const Visit& visit) {
+  const std::vector<double> tilts = list_known_tilts(series, results);
+  for (std::size_t k = 1; k < tilts.size(); ++k) {
+    const CaseResult *const low = find_result(case_at(series, tilts[k - 1]), results),
+                            *const high = find_result(case_at(series, tilts[k]), results);
+    if (differ(*low, *high)) visit(tilts[k - 1], tilts[k]);
+  }
+}
+
+}  // namespace
+
+std::vector<StudySeries> list_series(const StudyPlan& plan) {
+  std::vector<StudySeries> all;
+  StudyCase base;
+  for (const StudySpoon& spoon : plan.spoons) {
+    for (const StudyFood& food : plan.foods) {
+      for (const double friction : plan.frictions) {
+        base.spoon = spoon.name;
+        base.food = food.name;
+        base.friction = friction;
+        all.push_back({base, {}, false});
+      }
+    }
+  }
+  base.spoon = plan.spoons.front().name;
+  base.food = plan.foods.front().name;
+  base.friction = plan.usual_friction;
+  for (const StudyVariation& variation : plan.variations) {
+    for (const double value : variation.values) {
+      all.push_back({varied_case(base, variation.factor, value), variation.factor, false});
+    }
+  }
+  if (plan.tries_claim) {
+    // Straight, the bowl of the paper's pictures dips at its front. It has to be shallow and slippery for
+    // food to leave it within ten degrees, and the food must be laid in after the tilt, because straight it
+    // leaves.
+    base.friction = plan.frictions.front();
+    base.bowl.depth = claim_bowl_depth;
+    base.pitch_deg = claim_pitch_deg;
+    base.is_laid_after = true;
+    for (const StudyFood& food : plan.foods) {
+      base.food = food.name;
+      all.push_back({base, {}, true});
+    }
+  }
+  return all;
+}
+
+StudyCase case_at(const StudySeries& series, double tilt_deg) {
+  StudyCase at = series.base;
+  at.tilt_deg = tilt_deg;
+  return at;
+}
+
+std::vector<StudyCase> list_repeats(const StudyCase& study_case) {
+  StudyCase half_step = study_case, fine = study_case;
+  half_step.step_division = 2;
+  fine.is_fine = true;
+  return {half_step, fine};
+}
+
+std::vector<double> list_known_tilts(const StudySeries& series, const CaseResults& results) {
+  std::vector<double> tilts;
+  StudyCase any = series.base;
+  for (const auto& [key, done] : results) {
+    any.tilt_deg = done.study_case.tilt_deg;
+    if (done.study_case == any) tilts.push_back(any.tilt_deg);
+  }
+  std::sort(tilts.begin(), tilts.end());
+  return tilts;
+}
+
+std::vector<VerdictChange> find_changes(const StudySeries& series, const CaseResults& results) {
+  std::vector<VerdictChange> changes;
+  for_each_change(series, results, [&](double low, double high) {
+    if (high - low <= finest_tilt_deg) changes.push_back({low, high});
+  });
+  return changes;
+}
+
+const CaseResult* find_result(const StudyCase& study_case, const CaseResults& results) {
+  const auto found = results.find(case_key(study_case));
+  return found == results.end() ? nullptr : &found->second.result;
+}
+
+std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults& results) {
+  std::vector<StudyCase> next;
+  std::set<std::string> keys;
+  const auto need = [&](const StudyCase& study_case) {
+    const std::string key = case_key(study_case);
+    if (!results.contains(key) && keys.insert(key).second) next.push_back(study_case);
+  };
+  for (const StudySeries& series : list_series(plan)) {
+    const std::size_t before = next.size();
+    for (const double tilt : plan.tilts_deg) need(case_at(series, tilt));
+    if (next.size() > before) continue;
+    for_each_change(series, results, [&](double low, double high) {
+      if (high - low > finest_tilt_deg) need(case_at(series, std::round(0.5 * (low + high))));
+    });
+    if (next.size() > before || !plan.repeats) continue;
+    for (const VerdictChange& change : find_changes(series, results)) {
+      for (const double tilt : {change.low_deg, change.high_deg}) {
+        for (const StudyCase& repeat : list_repeats(case_at(series, tilt))) need(repeat);
+      }
+    }
+  }
+  return next;
+}
+
+}  // namespace spoonbill

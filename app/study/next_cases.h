@@ -1,0 +1,53 @@
+// The cases that a study still needs. A pure function of its plan and of the results so far, so that a study
+// may stop at any moment, and ends with the same results however many workers it has.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/study/study_case.h"
+#include "app/study/study_plan.h"
+
+namespace spoonbill {
+
+struct DoneCase {
+  StudyCase study_case;
+  CaseResult result;
+};
+using CaseResults = std::map<std::string, DoneCase>;  // by case_key()
+
+// A sweep of tilts for one spoon, food and friction, with all else as usual or with one factor varied.
+struct StudySeries {
+  StudyCase base;  // the case of each tilt but for its tilt and its lattice and steps
+  std::optional<StudyFactor> varied = {};
+  bool is_for_claim = false;  // whether it tries the claim of Pungotra et al. 2013 (read_claim())
+};
+
+// Returns all series of a plan, in the order of the report.
+std::vector<StudySeries> list_series(const StudyPlan& plan);
+
+// Returns the case of a series at a tilt.
+StudyCase case_at(const StudySeries& series, double tilt_deg);
+// Returns the repeats of a case: with half the step, and with a finer lattice.
+std::vector<StudyCase> list_repeats(const StudyCase& study_case);
+
+// A change of verdict of a series between two tilts that are at most finest_tilt_deg apart.
+struct VerdictChange {
+  double low_deg = 0.0, high_deg = 0.0;
+};
+inline constexpr double finest_tilt_deg = 1.0;
+
+// Returns the tilts of a series that have results, ascending.
+std::vector<double> list_known_tilts(const StudySeries& series, const CaseResults& results);
+std::vector<VerdictChange> find_changes(const StudySeries& series, const CaseResults& results);
+
+// Returns the result of a case; null if it is not known.
+const CaseResult* find_result(const StudyCase& study_case, const CaseResults& results);
+
+// Returns the cases that can be run now, each once, in a fixed order: first the plan's tilts; then, between
+// neighbouring tilts with different verdicts, tilts halfway, until they are finest_tilt_deg apart; then the
+// repeats of the cases on both sides of each change. Empty if the study is complete.
+std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults& results);
+
+}  // namespace spoonbill

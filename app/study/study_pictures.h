@@ -1,0 +1,22 @@
+// The pictures of a study: the end of a case, from the side, so that the tilt shows.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "app/study/study_page.h"
+#include "app/study/study_plan.h"
+#include "engine/base/result.h"
+
+namespace spoonbill {
+
+// Returns the cases of which a study makes pictures: each spoon at the plan's tilts, with the first food at
+// the usual friction.
+std::vector<StudyCase> list_pictured_cases(const StudyPlan& plan);
+
+// Runs a case and paints its end. Fails if the case cannot be judged, and with ErrorCode::cancelled if
+// `is_stopped` returns true.
+Result<StudyPicture> make_study_picture(const StudyPlan& plan, const StudyCase& study_case,
+                                        const std::function<bool()>& is_stopped);
+
+}  // namespace spoonbill

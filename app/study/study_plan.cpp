@@ -1,0 +1,313 @@
+#include "app/study/study_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "app/assets_folder.h"
+#include "engine/base/text.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/field_reader.h"
+#include "engine/scene/place_body.h"
+#include "engine/simulation/simulation.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int study_version = 1;
+constexpr std::size_t study_file_limit_bytes = std::size_t{1} << 20;
+constexpr std::array<double, 3> usual_size_mm{28.0, 14.0, 22.0};
+constexpr Range<double> food_size_range_m{1e-3, 0.2};
+// Rate at which yielding food flows, per second: its stress relaxes within some milliseconds.
+constexpr double usual_flow_rate_per_s = 300.0;
+// Gelatin that yields at a third of the pressure of its own height, just above what a trial refuses as
+// liquid.
+constexpr double usual_yield_strain = 0.012;
+
+std::filesystem::path asset(const char* folder, const std::string& name) {
+  return std::filesystem::path(assets_folder) / folder / (name + ".json");
+}
+
+// Reads a list of numbers, ascending if `is_ascending`.
+std::vector<double> read_numbers(FieldReader& reader, const char* field, Range<double> range,
+                                 Range<int> count, bool is_ascending = true) {
+  std::vector<double> numbers;
+  const Json& list = reader.list(field, count);
+  for (std::size_t k = 0; list.is_array() && k < list.size(); ++k) {
+    if (!list[k].is_number()) {
+      reader.refuse(field, "must be a list of numbers", ErrorCode::wrong_type);
+      return {};
+    }
+    const double number = list[k].get<double>();
+    if (!range.contains(number)) {
+      reader.refuse(field, "has " + number_text(number) + ", must be from " + number_text(range.low) +
+                               " to " + number_text(range.high));
+      return {};
+    }
+    if (is_ascending && !numbers.empty() && number <= numbers.back()) {
+      reader.refuse(field,
+                    "must ascend, but " + number_text(number) + " follows " + number_text(numbers.back()),
+                    ErrorCode::inconsistent);
+      return {};
+    }
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+Result<Material> read_named_material(const std::string& name) {
+  return read_material(asset("materials", name));
+}
+
+// Returns food of a shape and a size.
+Result<StudyFood> make_food(const std::string& name, const std::filesystem::path& shape, Material material,
+                            const Vector3& size_m) {
+  auto document = read_document(shape);
+  if (!document) return document.error();
+  StudyFood food{name, document->scene.bodies.front()};
+  if (food.body.mesh) {
+    return Error{ErrorCode::unsupported, shape.string() + ": food must be a body with a surface", "shape"};
+  }
+  food.body.loads.clear();
+  food.body.supports.clear();
+  food.body.regions.clear();
+  food.body.kind = BodyKind::deformable;
+  const Box box = bounding_box(food.body.surface.net);
+  scale_body(size_m.cwiseQuotient(box.extent()), box.centre(), food.body);
+  food.body.material = std::move(material);
+  // Gels relax within half a minute; creep would only keep the food from coming to rest within a case.
+  food.body.material.relaxing_fraction = 0.0;
+  return food;
+}
+
+std::filesystem::path usual_shape() {
+  return asset("models", "jelly-on-spoon");
+}
+
+void make_yielding(double yield_strain, Material& material) {
+  material.plastic = true;
+  material.yield_strain = yield_strain;
+  if (material.flow_rate_per_s == 0.0) material.flow_rate_per_s = usual_flow_rate_per_s;
+}
+
+Result<StudyFood> read_food(FieldReader reader, const std::filesystem::path& folder) {
+  const std::string name = reader.text("name");
+  Material material;
+  if (const std::string wanted = reader.text("material"); reader.status().ok()) {
+    auto read = read_named_material(wanted);
+    if (!read) {
+      reader.refuse("material", "\"" + excerpt(wanted) + "\" does not come with the program",
+                    ErrorCode::missing);
+    } else {
+      material = std::move(read).value();
+    }
+  }
+  if (reader.has("youngs_modulus_pa")) {
+    material.youngs_modulus_pa = reader.number("youngs_modulus_pa", youngs_modulus_range_pa);
+  }
+  if (reader.has("yield_strain")) make_yielding(reader.number("yield_strain", yield_strain_range), material);
+  const Vector3 size_m = reader.position_m("size_mm", food_size_range_m);
+  const std::filesystem::path shape = reader.has("shape") ? folder / reader.text("shape") : usual_shape();
+  reader.finish();
+  if (Status status = reader.status(); !status) return status.error();
+  return make_food(name, shape, std::move(material), size_m);
+}
+
+Result<StudySpoon> read_spoon(const std::filesystem::path& file) {
+  auto document = read_document(file);
+  if (!document) return document.error();
+  if (document->scene.bodies.size() != 1) {
+    return Error{ErrorCode::too_many, file.string() + ": has " +
+                                          std::to_string(document->scene.bodies.size()) +
+                                          " bodies; merge the parts of a spoon before a study"};
+  }
+  StudySpoon spoon{file.stem().string(), file, std::move(document->scene.bodies.front()), {}};
+  spoon.body.loads.clear();
+  spoon.body.supports.clear();
+  auto bowl = find_bowl(spoon.body, Vector3::UnitY());
+  if (!bowl) return bowl.error().in(file.string());
+  spoon.bowl = std::move(bowl).value();
+  return spoon;
+}
+
+Status add_usual_foods(StudyPlan& plan) {
+  const auto gelatin = read_named_material("gelatin-20-1");
+  if (!gelatin) return gelatin.error();
+  Material yielding = gelatin.value();
+  make_yielding(usual_yield_strain, yielding);
+  const Vector3 size_m = 1e-3 * Vector3(usual_size_mm[0], usual_size_mm[1], usual_size_mm[2]);
+  for (const auto& [name, material] : {std::pair<const char*, const Material&>{"gelatin", gelatin.value()},
+                                       {"yielding gelatin", yielding}}) {
+    auto food = make_food(name, usual_shape(), material, size_m);
+    if (!food) return food.error();
+    plan.foods.push_back(std::move(food).value());
+  }
+  return {};
+}
+
+StudyPlan usual_plan() {
+  StudyPlan plan;
+  for (int tilt = -30; tilt <= 30; tilt += 5) plan.tilts_deg.push_back(tilt);
+  plan.frictions = {0.02, 0.1, 0.3};
+  plan.variations = {{StudyFactor::helping, {0.8, 1.2}},   {StudyFactor::stiffness, {0.5, 2.0}},
+                     {StudyFactor::depth, {0.7, 1.4}},     {StudyFactor::width, {0.85, 1.2}},
+                     {StudyFactor::curvature, {0.7, 1.4}}, {StudyFactor::pitch, {-10.0, 10.0}}};
+  plan.frame_tilts_deg = {0.0, 10.0, 20.0};
+  plan.wrist_source = "radial deviation while feeding, Safaee-Rad et al. 1990";
+  return plan;
+}
+
+Range<double> factor_range(StudyFactor factor) {
+  if (factor == StudyFactor::pitch) return {-45.0, 45.0};
+  return factor == StudyFactor::stiffness ? Range<double>{0.01, 100.0} : bowl_factor_range;
+}
+
+// Returns the first name that two of a list have; empty if all differ.
+template <class Named>
+std::string find_repeated_name(const std::vector<Named>& list) {
+  std::set<std::string> names;
+  for (const Named& named : list) {
+    if (!names.insert(named.name).second) return named.name;
+  }
+  return {};
+}
+
+void read_variations(FieldReader reader, StudyPlan& plan) {
+  plan.variations.clear();
+  for (std::size_t k = 0; k < std::size(study_factor_names); ++k) {
+    const char* const name = study_factor_names[k];
+    if (!reader.has(name)) continue;
+    const auto factor = static_cast<StudyFactor>(k);
+    plan.variations.push_back({factor, read_numbers(reader, name, factor_range(factor), {0, 50})});
+  }
+  reader.finish();
+}
+
+Status read_study(const std::filesystem::path& file, StudyPlan& plan) {
+  const auto text = read_file(file, study_file_limit_bytes);
+  if (!text) return text.error();
+  const std::string source = file.string();
+  const auto json = parse_json(text.value(), source);
+  if (!json) return json.error();
+  FieldReader reader(json.value(), source);
+  reader.version("spoonbill_study", study_version);
+  if (reader.has("tilts_deg")) {
+    plan.tilts_deg = read_numbers(reader, "tilts_deg", study_tilt_range_deg, {1, 500});
+  }
+  if (reader.has("frictions")) {
+    plan.frictions = read_numbers(reader, "frictions", study_friction_range, {1, 50});
+  }
+  if (reader.has("usual_friction")) {
+    plan.usual_friction = reader.number("usual_friction", study_friction_range);
+  }
+  if (reader.has("vary")) read_variations(reader.inner("vary"), plan);
+  if (reader.has("claim")) plan.tries_claim = reader.boolean("claim");
+  if (reader.has("repeats")) plan.repeats = reader.boolean("repeats");
+  if (reader.has("frames_deg")) {
+    plan.frame_tilts_deg = read_numbers(reader, "frames_deg", study_tilt_range_deg, {0, 20});
+  }
+  if (reader.has("wrist_deg")) {
+    const std::vector<double> range = read_numbers(reader, "wrist_deg", {-90.0, 90.0}, {2, 2});
+    if (range.size() == 2) plan.wrist_deg = {range[0], range[1]};
+    plan.wrist_source = "as given in the study file";
+  }
+  if (reader.has("materials")) {
+    plan.materials.clear();
+    const Json& list = reader.list("materials", {1, 10});
+    for (std::size_t k = 0; list.is_array() && k < list.size(); ++k) {
+      auto material = list[k].is_string() ? read_named_material(list[k].get<std::string>())
+                                          : Result<Material>(Error{ErrorCode::wrong_type, ""});
+      if (!material) {
+        reader.refuse("materials", "must be names of materials that come with the program",
+                      ErrorCode::missing);
+        break;
+      }
+      plan.materials.push_back(std::move(material).value());
+    }
+  }
+  if (reader.has("foods")) {
+    plan.foods.clear();
+    const Json& list = reader.list("foods", {1, 20});
+    for (std::size_t k = 0; list.is_array() && k < list.size() && reader.status().ok(); ++k) {
+      auto food = read_food(reader.element(list[k], "foods", k), file.parent_path());
+      if (!food) return reader.status().ok() ? food.error().in(source) : reader.status();
+      plan.foods.push_back(std::move(food).value());
+    }
+    if (const std::string name = find_repeated_name(plan.foods); !name.empty()) {
+      reader.refuse("foods", "two foods have the name \"" + excerpt(name) + "\"", ErrorCode::duplicate);
+    }
+  }
+  reader.finish();
+  return reader.status();
+}
+
+std::uint64_t hash_shape(const Body& body) {
+  StateHash hash;
+  for (const KnotVector* const knots : {&body.surface.u, &body.surface.v}) {
+    for (const double knot : knots->knots()) hash.add(knot);
+  }
+  for (const std::vector<double>* const list :
+       {&body.surface.net.x, &body.surface.net.y, &body.surface.net.z}) {
+    hash.add(list->data(), list->size());
+  }
+  for (const Vector2& corner : body.rim) {
+    hash.add(corner.x());
+    hash.add(corner.y());
+  }
+  return hash.value();
+}
+
+}  // namespace
+
+Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoons,
+                                  const std::filesystem::path& file) {
+  StudyPlan plan = usual_plan();
+  if (!file.empty()) {
+    if (Status read = read_study(file, plan); !read) return read.error();
+  }
+  if (plan.foods.empty()) {
+    if (Status added = add_usual_foods(plan); !added) return added.error();
+  }
+  const bool has_materials = !plan.materials.empty();
+  for (const char* const name : {"polypropylene", "steel-304"}) {
+    if (has_materials) break;
+    auto material = read_named_material(name);
+    if (!material) return material.error();
+    plan.materials.push_back(std::move(material).value());
+  }
+  for (const std::filesystem::path& spoon : spoons) {
+    auto read = read_spoon(spoon);
+    if (!read) return read.error();
+    plan.spoons.push_back(std::move(read).value());
+  }
+  if (const std::string name = find_repeated_name(plan.spoons); !name.empty()) {
+    return Error{ErrorCode::duplicate, "two spoons have the name \"" + excerpt(name) + "\"; rename a file"};
+  }
+  return plan;
+}
+
+Json plan_to_json(const StudyPlan& plan) {
+  Json json = Json::object();
+  for (const StudySpoon& spoon : plan.spoons) {
+    json["spoons"].push_back({{"name", spoon.name}, {"shape", hash_shape(spoon.body)}});
+  }
+  for (const StudyFood& food : plan.foods) {
+    json["foods"].push_back({{"name", food.name},
+                             {"shape", hash_shape(food.body)},
+                             {"material", material_to_json(food.body.material)}});
+  }
+  json["tilts_deg"] = plan.tilts_deg;
+  json["frictions"] = plan.frictions;
+  json["usual_friction"] = plan.usual_friction;
+  json["vary"] = Json::object();
+  for (const StudyVariation& variation : plan.variations) {
+    json["vary"][study_factor_names[static_cast<std::size_t>(variation.factor)]] = variation.values;
+  }
+  json["claim"] = plan.tries_claim;
+  json["repeats"] = plan.repeats;
+  return json;
+}
+
+}  // namespace spoonbill

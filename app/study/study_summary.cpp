@@ -1,0 +1,132 @@
+#include "app/study/study_summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spoonbill {
+namespace {
+
+constexpr double least_time_change_s = 0.01;
+
+// Judges the case of a series at a tilt by its own verdict and those of its repeats.
+JudgedTilt judge_tilt(const StudySeries& series, double tilt_deg, const CaseResults& results) {
+  const StudyCase at = case_at(series, tilt_deg);
+  JudgedTilt judged{tilt_deg, find_result(at, results)};
+  if (!judged.result->failure.empty()) return judged;
+  judged.verdict = judged.result->verdict;
+  for (const StudyCase& repeat : list_repeats(at)) {
+    const CaseResult* const again = find_result(repeat, results);
+    if (!again) continue;
+    judged.is_repeated = true;
+    if (!again->failure.empty() || again->verdict != judged.result->verdict) {
+      judged.verdict = Verdict::undecided;
+    }
+  }
+  return judged;
+}
+
+// Finds the longest run of tilts that hold. `is_holding` tells what holds.
+template <class IsHolding>
+std::optional<std::pair<std::size_t, std::size_t>> find_longest_run(const std::vector<JudgedTilt>& tilts,
+                                                                    const IsHolding& is_holding) {
+  std::optional<std::pair<std::size_t, std::size_t>> longest;
+  double length = -1.0;
+  for (std::size_t first = 0; first < tilts.size(); ++first) {
+    if (!is_holding(tilts[first])) continue;
+    std::size_t last = first;
+    while (last + 1 < tilts.size() && is_holding(tilts[last + 1])) ++last;
+    if (tilts[last].tilt_deg - tilts[first].tilt_deg > length) {
+      length = tilts[last].tilt_deg - tilts[first].tilt_deg;
+      longest = {first, last};
+    }
+    first = last;
+  }
+  return longest;
+}
+
+void find_holding_range(SeriesSummary& summary) {
+  const auto run =
+      find_longest_run(summary.tilts, [](const JudgedTilt& tilt) { return tilt.verdict == Verdict::holds; });
+  if (!run) return;
+  const auto& [first, last] = *run;
+  const std::vector<JudgedTilt>& tilts = summary.tilts;
+  summary.is_open_low = first == 0;
+  summary.is_open_high = last + 1 == tilts.size();
+  // An end is between the last tilt that holds and the next that is decided and does not.
+  const auto next_decided = [&](std::size_t from, int step) {
+    std::size_t at = from;
+    while (tilts[at].verdict == Verdict::undecided && at != 0 && at + 1 != tilts.size()) {
+      at = step > 0 ? at + 1 : at - 1;
+    }
+    return tilts[at].tilt_deg;
+  };
+  double low = tilts[first].tilt_deg, high = tilts[last].tilt_deg, low_open = 0.0, high_open = 0.0;
+  if (!summary.is_open_low) {
+    const double outside = next_decided(first - 1, -1);
+    low_open = 0.5 * (low - outside);
+    low = 0.5 * (low + outside);
+  }
+  if (!summary.is_open_high) {
+    const double outside = next_decided(last + 1, 1);
+    high_open = 0.5 * (outside - high);
+    high = 0.5 * (high + outside);
+  }
+  summary.holds_deg = Range<double>{low, high};
+  summary.best_deg = 0.5 * (low + high);
+  summary.uncertainty_deg = 0.5 * (low_open + high_open);
+}
+
+void compare_repeat(const StudyPlan& plan, const DoneCase& repeat, const CaseResult& usual,
+                    TrustSummary& trust) {
+  const CaseResult& again = repeat.result;
+  ++trust.repeats;
+  if (!usual.failure.empty() || !again.failure.empty()) return;
+  if (usual.verdict != again.verdict) {
+    trust.disagreements.push_back({repeat.study_case, usual.verdict, again.verdict});
+    return;
+  }
+  if (usual.first_spill_s && again.first_spill_s) {
+    const double change_s = std::abs(*again.first_spill_s - *usual.first_spill_s);
+    if (change_s > least_time_change_s && std::abs(*usual.first_spill_s) > 0.0) {
+      trust.largest_time_change =
+          std::max(trust.largest_time_change, change_s / std::abs(*usual.first_spill_s));
+    }
+  }
+  const auto food = std::find_if(plan.foods.begin(), plan.foods.end(), [&](const StudyFood& named) {
+    return named.name == repeat.study_case.food;
+  });
+  if (usual.verdict == Verdict::overhangs && !food->body.material.plastic) {
+    trust.largest_mass_change =
+        std::max(trust.largest_mass_change,
+                 std::abs(again.outside_kg / again.food_kg - usual.outside_kg / usual.food_kg));
+  }
+}
+
+}  // namespace
+
+StudySummary summarise(const StudyPlan& plan, const CaseResults& results) {
+  StudySummary summary;
+  for (const StudySeries& series : list_series(plan)) {
+    SeriesSummary one;
+    one.series = series;
+    for (const double tilt : list_known_tilts(series, results)) {
+      one.tilts.push_back(judge_tilt(series, tilt, results));
+    }
+    one.changes = find_changes(series, results);
+    if (!one.tilts.empty()) find_holding_range(one);
+    summary.series.push_back(std::move(one));
+  }
+  for (const auto& [key, done] : results) {
+    if (!done.result.failure.empty()) summary.failures.push_back(&done);
+    StudyCase usual = done.study_case;
+    usual.step_division = 1;
+    usual.is_fine = false;
+    if (usual == done.study_case) continue;
+    if (const CaseResult* const result = find_result(usual, results)) {
+      compare_repeat(plan, done, *result, summary.trust);
+    }
+  }
+  return summary;
+}
+
+}  // namespace spoonbill

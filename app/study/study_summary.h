@@ -1,0 +1,60 @@
+// Summary of the cases of a study: for each series the tilts at which the food holds, the best tilt, and how
+// far the repeats confirm it. A pure function of plan and results.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/study/next_cases.h"
+
+namespace spoonbill {
+
+// A result at a tilt, after its repeats were compared with it.
+struct JudgedTilt {
+  double tilt_deg = 0.0;
+  const CaseResult* result = nullptr;    // of the usual lattice and steps
+  Verdict verdict = Verdict::undecided;  // undecided if a repeat disagrees
+  bool is_repeated = false;
+};
+
+struct SeriesSummary {
+  StudySeries series;
+  std::vector<JudgedTilt> tilts;  // ascending
+  // The longest range of tilts, all tried, at which the food holds; empty if there is none. It ends halfway
+  // between the last tilt that holds and the next.
+  std::optional<Range<double>> holds_deg;
+  bool is_open_low = false, is_open_high = false;  // whether the range ends where the tilts end
+  // The centre of the range, farthest from both ends; and the half width of the interval around it that the
+  // spacing of the tilts and disagreeing repeats leave open.
+  double best_deg = 0.0, uncertainty_deg = 0.0;
+  std::vector<VerdictChange> changes;
+};
+
+// A repeat whose verdict differs from that of the case.
+struct Disagreement {
+  StudyCase repeat;
+  Verdict usual = Verdict::undecided, repeated = Verdict::undecided;
+};
+
+// How far half the step and a finer lattice change results.
+struct TrustSummary {
+  int repeats = 0;
+  std::vector<Disagreement> disagreements;
+  // Largest relative change of the time of first spill, of cases that leave in both runs. Times are taken
+  // from the start of the turn, and differences below a hundredth of a second do not count.
+  double largest_time_change = 0.0;
+  // Largest change of the overhanging mass of food that does not yield, as a fraction of the food's mass.
+  double largest_mass_change = 0.0;
+};
+
+struct StudySummary {
+  std::vector<SeriesSummary> series;
+  TrustSummary trust;
+  std::vector<const DoneCase*> failures;  // cases that could not be judged, in the order of their keys
+};
+
+// `results` must outlive the summary.
+StudySummary summarise(const StudyPlan& plan, const CaseResults& results);
+
+}  // namespace spoonbill
