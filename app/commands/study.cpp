@@ -37,7 +37,7 @@ struct StudyOptions {
   std::optional<StudyPart> part;
   bool on_slurm = false;
   bool merges_only = false;
-  bool starts_anew = false;
+  bool restarts = false;
   bool progress = false;
   bool json = false;
 };
@@ -108,7 +108,11 @@ Status run_all_on_slurm(const StudyOptions& options, const StudyPlan& plan, Case
       bar.show(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(job.count));
     };
     if (Status ran = run_on_slurm(job, show, [&] { return interrupt.requested(); }); !ran) return ran;
-    if (auto merged = merge_parts(options.out, plan, file); !merged) return merged.error();
+    const auto merged = merge_parts(options.out, plan, file);
+    if (!merged) return merged.error();
+    if (merged.value() == 0) {
+      return Error{ErrorCode::internal, "the tasks did none of the cases that are needed; use --restart"};
+    }
   }
 }
 
@@ -127,7 +131,8 @@ Status run_all_cases(const StudyOptions& options, const StudyPlan& plan, CaseFil
     std::uint64_t done = 0;
     const auto receive = [&](const StudyCase& study_case, const CaseResult& result) {
       bar.show(++done, cases.size());
-      return file.add(study_case, result);
+      if (Status added = file.add(study_case, result); !added) return added;
+      return file.flush();
     };
     if (Status ran = run_cases(plan, cases, workers, receive, [&] { return interrupt.requested(); }); !ran) {
       return ran;
@@ -143,28 +148,24 @@ Result<std::vector<StudyPicture>> make_pictures(const StudyOptions& options, con
   for (std::size_t k = 0; k < cases.size(); ++k) {
     auto picture = make_study_picture(plan, cases[k], [&] { return interrupt.requested(); });
     bar.show(k + 1, cases.size());
-    if (!picture && picture.error().code == ErrorCode::not_converged) continue;  // the report lists it
     if (!picture) return picture.error();
     pictures.push_back(std::move(picture).value());
   }
   return pictures;
 }
 
-Status write_report(const std::filesystem::path& out, const StudyPlan& plan, const CaseResults& results,
-                    const std::vector<StudyPicture>& pictures, const Json& content,
-                    const StudySummary& summary) {
-  const auto page = make_study_page(plan, results, summary, pictures);
-  if (!page) return page.error();
+Status write_report(const std::filesystem::path& out, const std::string& page, const Json& content,
+                    const std::string& csv, const std::vector<StudyPicture>& pictures) {
   const OutputOptions how{NamedBy::program, false};
-  for (const auto& [name, text] : {std::pair<const char*, std::string>{"study.html", page.value()},
+  for (const auto& [name, text] : {std::pair<const char*, std::string>{"study.html", page},
                                    {"study.json", content.dump(1) + "\n"},
-                                   {"cases.csv", cases_csv(results)}}) {
+                                   {"cases.csv", csv}}) {
     if (Status written = write_file(out / name, text, Durability::later, how); !written) return written;
   }
-  for (const StudyPicture& picture : pictures) {
-    if (Status written = write_file(out / picture.file, picture.png, Durability::later, how); !written) {
-      return written;
-    }
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    if (pictures[k].png.empty()) continue;
+    const std::filesystem::path file = out / ("picture-" + std::to_string(k + 1) + ".png");
+    if (Status written = write_file(file, pictures[k].png, Durability::later, how); !written) return written;
   }
   return flush_to_disk(out);
 }
@@ -183,18 +184,74 @@ void add_facts(FactSheet& facts, const StudyOptions& options, const CaseResults&
   facts.add("Report", (options.out / "study.html").string(), "report", (options.out / "study.html").string());
 }
 
+// Runs the part that --part names.
+Status run_own_part(const StudyOptions& options, const StudyPlan& plan, Console& console) {
+  InterruptWatch interrupt;
+  Status ran = run_part(options.out, plan, *options.part, count_workers(options),
+                        [&] { return interrupt.requested(); });
+  if (!ran && ran.error().code == ErrorCode::cancelled) interrupt.answer();
+  if (!ran) return ran;
+  FactSheet facts;
+  const std::string file = part_file(options.out, *options.part).string();
+  facts.add("Part", file, "part", file);
+  facts.print(console.out, options.json);
+  return {};
+}
+
+// Merges the parts and says how many cases are needed next. Returns true if none is.
+Result<bool> merge_and_count(const StudyOptions& options, const StudyPlan& plan, CaseFile& file,
+                             Console& console) {
+  if (auto merged = merge_parts(options.out, plan, file); !merged) return merged.error();
+  const std::size_t needed = find_next_cases(plan, file.results()).size();
+  if (needed == 0) return true;
+  FactSheet facts;
+  facts.add("Cases", std::to_string(file.results().size()), "cases", file.results().size());
+  facts.add("Needed next", std::to_string(needed), "needed", needed);
+  facts.print(console.out, options.json);
+  return false;
+}
+
+// Writes the report of all cases.
+Status finish(const StudyOptions& options, const StudyPlan& plan, CaseFile& file,
+              const std::vector<StudyPicture>& pictures, Console& console) {
+  const StudySummary summary = summarise(plan, file.results());
+  const Bendings bendings = bend_all(plan);
+  const auto content = study_json(plan, file.results(), summary, bendings);
+  if (!content) return content.error();
+  const auto page = make_study_page(plan, file.results(), summary, bendings, pictures);
+  if (!page) return page.error();
+  if (Status written =
+          write_report(options.out, page.value(), content.value(), cases_csv(file.results()), pictures);
+      !written) {
+    return written;
+  }
+  if (Status finished = file.finish(); !finished) return finished;
+  FactSheet facts;
+  add_facts(facts, options, file.results(), summary, content.value());
+  facts.print(console.out, options.json);
+  return {};
+}
+
+// Refuses a study that would write over what it reads.
+Status check_sources(const StudyOptions& options) {
+  std::vector<std::filesystem::path> sources = options.spoons;
+  if (!options.file.empty()) sources.push_back(options.file);
+  for (const std::filesystem::path& source : sources) {
+    for (const char* const name : {"study.html", "study.json", "cases.csv", "cases.jsonl", "slurm-task.sh"}) {
+      if (Status checked = check_is_not_source(options.out / name, source, "--out"); !checked) return checked;
+    }
+  }
+  return {};
+}
+
 Status study(const StudyOptions& options, Console& console) {
+  if (Status checked = check_sources(options); !checked) return checked;
   const auto plan = make_study_plan(options.spoons, options.file);
   if (!plan) return plan.error();
   if (Status made = make_folder(options.out); !made) return made;
+  if (options.part) return run_own_part(options, plan.value(), console);
   InterruptWatch interrupt;
-  if (options.part) {
-    const auto is_stopped = [&] { return interrupt.requested(); };
-    Status ran = run_part(options.out, plan.value(), *options.part, count_workers(options), is_stopped);
-    if (!ran && ran.error().code == ErrorCode::cancelled) interrupt.answer();
-    return ran;
-  }
-  auto file = CaseFile::open(options.out, plan_to_json(plan.value()), options.starts_anew);
+  auto file = CaseFile::open(options.out, plan_to_json(plan.value()), options.restarts);
   if (!file) return file.error();
   const auto stopped = [&](const Error& error) -> Error {
     if (error.code != ErrorCode::cancelled) return error;
@@ -202,15 +259,9 @@ Status study(const StudyOptions& options, Console& console) {
     return stopped_study(options.out, file->results().size());
   };
   if (options.merges_only) {
-    if (auto merged = merge_parts(options.out, plan.value(), file.value()); !merged) return merged.error();
-    const std::size_t needed = find_next_cases(plan.value(), file->results()).size();
-    if (needed > 0) {
-      FactSheet facts;
-      facts.add("Cases", std::to_string(file->results().size()), "cases", file->results().size());
-      facts.add("Needed next", std::to_string(needed), "needed", needed);
-      facts.print(console.out, options.json);
-      return {};
-    }
+    const auto is_complete = merge_and_count(options, plan.value(), file.value(), console);
+    if (!is_complete) return is_complete.error();
+    if (!is_complete.value()) return {};
   }
   const auto run_all = options.on_slurm ? run_all_on_slurm : run_all_cases;
   if (Status ran = run_all(options, plan.value(), file.value(), interrupt, console); !ran) {
@@ -218,19 +269,7 @@ Status study(const StudyOptions& options, Console& console) {
   }
   const auto pictures = make_pictures(options, plan.value(), interrupt, console);
   if (!pictures) return stopped(pictures.error());
-  const StudySummary summary = summarise(plan.value(), file->results());
-  const auto content = study_json(plan.value(), file->results(), summary);
-  if (!content) return content.error();
-  if (Status written = write_report(options.out, plan.value(), file->results(), pictures.value(),
-                                    content.value(), summary);
-      !written) {
-    return written;
-  }
-  if (Status finished = file->finish(); !finished) return finished;
-  FactSheet facts;
-  add_facts(facts, options, file->results(), summary, content.value());
-  facts.print(console.out, options.json);
-  return {};
+  return finish(options, plan.value(), file.value(), pictures.value(), console);
 }
 
 }  // namespace
@@ -242,12 +281,10 @@ CommandEntry add_study(OptionSet root) {
       "Lays food into the bowl of each spoon, tilts the spoon, and judges: holds, overhangs, leaves, or\n"
       "undecided. Tries tilts from -30 to 30 degrees at three frictions with gelatin that is elastic and\n"
       "gelatin that yields, then halves the steps between different verdicts until they are one degree, and\n"
-      "repeats the cases there with half the step and finer cells. Varies the food and the bowl of the "
-      "first\n"
-      "spoon, one thing at a time. A study file can change all of this.\n"
-      "Writes study.html, a report that needs no other file; study.json; cases.csv; and pictures. A study "
-      "that\n"
-      "was stopped goes on when the same command runs again.\n"
+      "repeats the cases there with half the step and finer cells. Varies the food and the bowl of the\n"
+      "first spoon, one thing at a time. A study file can change all of this.\n"
+      "Writes study.html, a report that needs no other file; study.json; cases.csv; and pictures. A study\n"
+      "that was stopped goes on when the same command runs again.\n"
       "A spoon is a document with one body that opens upwards; its bowl is found by itself.\n"
       "Example: spoonbill study assets/models/spoon-original.json --out output/study");
   parser.add_option("SPOON", options->spoons, "Documents of spoons (.json)").require();
@@ -257,14 +294,18 @@ CommandEntry add_study(OptionSet root) {
       .add_option("--workers", options->workers,
                   "Cases run at the same time; default: one for each processor")
       .limit(worker_range);
-  parser.add_flag("--slurm", options->on_slurm,
-                  "Run the cases as tasks of Slurm, on machines that share the folder");
-  add_parsed_option(
+  const CommandOption slurm = parser.add_flag(
+      "--slurm", options->on_slurm, "Run the cases as tasks of Slurm, on machines that share the folder");
+  const CommandOption part = add_parsed_option(
       parser, "--part", "NUMBER/COUNT", parse_part,
       [options](const StudyPart& part) { options->part = part; },
       "Run only this part of the cases needed next, and keep it for a run without this option to merge");
-  parser.add_flag("--merge", options->merges_only, "Merge the parts, and stop unless nothing else is needed");
-  parser.add_flag("--restart", options->starts_anew, "Leave out what the folder has from before");
+  const CommandOption merge = parser.add_flag("--merge", options->merges_only,
+                                              "Merge the parts, and stop unless nothing else is needed");
+  const CommandOption restart =
+      parser.add_flag("--restart", options->restarts, "Remove the cases that the folder has from before");
+  part.exclude(slurm).exclude(merge).exclude(restart);
+  merge.exclude(slurm).exclude(restart);
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return study(*options, console); }};

@@ -1,16 +1,33 @@
 #include "app/study/case_crew.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+namespace {
+
+// Runs a case. A fault of the program, such as a failed assertion, ends one case instead of the study.
+Result<CaseResult> run_safely(const StudyPlan& plan, const StudyCase& study_case, const CaseWatch& watch) {
+  try {
+    return run_case(plan, study_case, watch);
+  } catch (const std::exception& fault) {
+    CaseResult result;
+    result.failure = std::string("a fault of the program: ") + fault.what();
+    return result;
+  }
+}
+
+}  // namespace
 
 Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int workers,
                  const CaseReceiver& receive, const std::function<bool()>& is_stopped) {
@@ -23,14 +40,15 @@ Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int
   const auto work = [&] {
     const CaseWatch watch = [&](const Trial&, const Simulation&) { return !stopped.load(); };
     for (std::size_t k = next++; k < cases.size() && !stopped.load(); k = next++) {
-      auto result = run_case(plan, cases[k], watch);
+      auto result = run_safely(plan, cases[k], watch);
       const std::lock_guard lock(mutex);
       ended.emplace_back(k, std::move(result));
       changed.notify_one();
     }
   };
-  std::vector<std::thread> threads;
-  for (int k = 0; k < workers; ++k) threads.emplace_back(work);
+  const std::size_t count = std::min(static_cast<std::size_t>(workers), cases.size());
+  std::vector<std::jthread> threads;
+  for (std::size_t k = 0; k < count; ++k) threads.emplace_back(work);
   Status status;
   for (std::size_t received = 0; received < cases.size() && status.ok();) {
     std::unique_lock lock(mutex);
@@ -46,7 +64,7 @@ Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int
     }
   }
   stopped = !status.ok();
-  for (std::thread& thread : threads) thread.join();
+  threads.clear();  // waits for all of them
   return status;
 }
 

@@ -1,13 +1,33 @@
 #include "app/study/case_file.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace spoonbill {
 namespace {
 
 constexpr int file_version = 1;
 constexpr std::size_t file_limit_bytes = std::size_t{256} << 20;
+
+constexpr const char* file_name = "cases.jsonl";
+
+// Returns the files of a folder that have cases, also those that create_growing() has put aside, in the order
+// of their names.
+std::vector<std::filesystem::path> list_case_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failure)) {
+    const std::string name = entry.path().filename().string();
+    const bool has_cases = name == file_name || name.starts_with(std::string(file_name) + ".part");
+    if (has_cases && entry.is_regular_file(failure) && entry.file_size(failure) > 0) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 std::string first_line(const Json& plan) {
   return Json{{"spoonbill_study_cases", file_version}, {"plan", plan}}.dump() + "\n";
@@ -18,6 +38,10 @@ std::string case_line(const DoneCase& done) {
 }
 
 }  // namespace
+
+std::filesystem::path parts_folder(const std::filesystem::path& folder) {
+  return folder / "parts";
+}
 
 std::string cases_text(const Json& plan, const CaseResults& results) {
   std::string text = first_line(plan);
@@ -60,12 +84,7 @@ Result<CaseResults> read_cases(const std::filesystem::path& file, const Json& pl
 
 Result<CaseResults> read_done_cases(const std::filesystem::path& folder, const Json& plan) {
   CaseResults results;
-  for (const char* const name : {"cases.jsonl", "cases.jsonl.part"}) {
-    const std::filesystem::path file = folder / name;
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::file_size(file, ignored) == 0) {
-      continue;
-    }
+  for (const std::filesystem::path& file : list_case_files(folder)) {
     auto read = read_cases(file, plan);
     if (!read) return read;
     results.merge(read.value());
@@ -73,22 +92,26 @@ Result<CaseResults> read_done_cases(const std::filesystem::path& folder, const J
   return results;
 }
 
-Result<CaseFile> CaseFile::open(const std::filesystem::path& folder, const Json& plan, bool starts_anew) {
-  const std::filesystem::path file = folder / "cases.jsonl";
+Result<CaseFile> CaseFile::open(const std::filesystem::path& folder, const Json& plan, bool restarts) {
+  const std::filesystem::path file = folder / file_name;
   CaseResults results;
-  if (!starts_anew) {
+  if (!restarts) {
     auto read = read_done_cases(folder, plan);
     if (!read) return read.error();
     results = std::move(read).value();
   }
   auto out = OutputFile::create_growing(file, {NamedBy::program, false});
   if (!out) return out.error();
-  const std::filesystem::path aside = out->kept_aside();
+  const std::filesystem::path growing = out->written_file();
   CaseFile cases(file, plan, std::move(out).value());
   if (Status written = cases.out_->write(cases_text(plan, results)); !written) return written.error();
   if (Status flushed = cases.out_->flush(); !flushed) return flushed.error();
+  // All that the other files have is in the new one now.
   std::error_code ignored;
-  if (!aside.empty()) std::filesystem::remove(aside, ignored);
+  for (const std::filesystem::path& other : list_case_files(folder)) {
+    if (other != growing) std::filesystem::remove(other, ignored);
+  }
+  if (restarts) std::filesystem::remove_all(parts_folder(folder), ignored);
   cases.results_ = std::move(results);
   return cases;
 }

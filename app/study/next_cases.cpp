@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double claim_bowl_depth = 0.5, claim_pitch_deg = -10.0;
+constexpr double claim_bowl_depth = 0.5, claim_pitch_deg = -10.0, claim_friction = 0.02;
 
 StudyCase varied_case(StudyCase base, StudyFactor factor, double value) {
   switch (factor) {
@@ -33,8 +33,13 @@ StudyCase varied_case(StudyCase base, StudyFactor factor, double value) {
   return base;
 }
 
+bool is_judged(const CaseResult& result) {
+  return result.failure.empty();
+}
+
+// Returns whether the verdicts differ, or only one of the cases was judged.
 bool differ(const CaseResult& a, const CaseResult& b) {
-  return a.failure.empty() && b.failure.empty() && a.verdict != b.verdict;
+  return is_judged(a) != is_judged(b) || (is_judged(a) && a.verdict != b.verdict);
 }
 
 // Calls `visit(low, high)` for neighbouring known tilts with different verdicts.
@@ -44,7 +49,7 @@ void for_each_change(const StudySeries& series, const CaseResults& results, cons
   for (std::size_t k = 1; k < tilts.size(); ++k) {
     const CaseResult *const low = find_result(case_at(series, tilts[k - 1]), results),
                             *const high = find_result(case_at(series, tilts[k]), results);
-    if (differ(*low, *high)) visit(tilts[k - 1], tilts[k]);
+    if (low && high && differ(*low, *high)) visit(tilts[k - 1], tilts[k]);
   }
 }
 
@@ -66,8 +71,12 @@ std::vector<StudySeries> list_series(const StudyPlan& plan) {
   base.spoon = plan.spoons.front().name;
   base.food = plan.foods.front().name;
   base.friction = plan.usual_friction;
+  const bool has_usual =
+      std::find(plan.frictions.begin(), plan.frictions.end(), plan.usual_friction) != plan.frictions.end();
+  if (!plan.variations.empty() && !has_usual) all.push_back({base, {}, false});
   for (const StudyVariation& variation : plan.variations) {
     for (const double value : variation.values) {
+      if (varied_case(base, variation.factor, value) == base) continue;
       all.push_back({varied_case(base, variation.factor, value), variation.factor, false});
     }
   }
@@ -75,7 +84,7 @@ std::vector<StudySeries> list_series(const StudyPlan& plan) {
     // Straight, the bowl of the paper's pictures dips at its front. It has to be shallow and slippery for
     // food to leave it within ten degrees, and the food must be laid in after the tilt, because straight it
     // leaves.
-    base.friction = plan.frictions.front();
+    base.friction = claim_friction;
     base.bowl.depth = claim_bowl_depth;
     base.pitch_deg = claim_pitch_deg;
     base.is_laid_after = true;
@@ -114,7 +123,9 @@ std::vector<double> list_known_tilts(const StudySeries& series, const CaseResult
 std::vector<VerdictChange> find_changes(const StudySeries& series, const CaseResults& results) {
   std::vector<VerdictChange> changes;
   for_each_change(series, results, [&](double low, double high) {
-    if (high - low <= finest_tilt_deg) changes.push_back({low, high});
+    const bool are_judged = is_judged(*find_result(case_at(series, low), results)) &&
+                            is_judged(*find_result(case_at(series, high), results));
+    if (are_judged && high - low <= finest_tilt_deg) changes.push_back({low, high});
   });
   return changes;
 }

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -18,9 +19,10 @@ namespace spoonbill {
 namespace {
 
 constexpr int submission_limit = 6;
-constexpr std::chrono::milliseconds queue_interval{500};
+constexpr std::chrono::milliseconds stop_interval{50};  // between questions whether the study is stopped
+constexpr int stops_a_query = 10;                       // number of these questions between those to Slurm
 // Time for which the files of tasks that have ended may take to appear, as on a network file system.
-constexpr std::chrono::seconds file_patience{5};
+constexpr std::chrono::seconds file_patience{10};
 constexpr int usual_array_size = 1001;  // MaxArraySize unless the configuration says otherwise
 
 // Runs one of Slurm's commands and returns its output.
@@ -74,15 +76,14 @@ Status write_script(const SlurmJob& job, const std::filesystem::path& script) {
   std::string text = "#!/bin/sh\n";
   text += "exec";
   for (const std::string& word : job.command) text += " " + quoted(word);
-  text +=
-      " --part \"$((${SPOONBILL_FIRST_PART:-0} + SLURM_ARRAY_TASK_ID))/" + std::to_string(job.count) + "\"\n";
+  text += " --part \"$((${SPOONBILL_FIRST_PART:-0} + ${SLURM_ARRAY_TASK_ID:-1}))/" +
+          std::to_string(job.count) + "\"\n";
   return write_file(script, text, Durability::now, {NamedBy::program, false});
 }
 
-// Submits the parts and returns the numbers of the jobs.
-Result<std::vector<std::string>> submit(const std::vector<int>& parts, int array_limit,
-                                        const std::filesystem::path& script) {
-  std::vector<std::string> jobs;
+// Submits the parts as arrays of tasks with the name `name`.
+Status submit(const std::vector<int>& parts, int array_limit, const std::string& name,
+              const std::filesystem::path& script) {
   for (std::size_t begin = 0; begin < parts.size();) {
     // The numbers of an array's tasks are below its limit, so later parts are counted from an offset.
     const int offset = (parts[begin] - 1) / array_limit * array_limit;
@@ -97,50 +98,59 @@ Result<std::vector<std::string>> submit(const std::vector<int>& parts, int array
       numbers += (numbers.empty() ? "" : ",") + std::to_string(parts[first] - offset);
       if (end > first) numbers += "-" + std::to_string(parts[end] - offset);
     }
-    const auto answer = ask_slurm({"sbatch", "--parsable", "--job-name=spoonbill-study", "--output=/dev/null",
+    const auto answer = ask_slurm({"sbatch", "--parsable", "--job-name=" + name, "--output=/dev/null",
                                    "--export=ALL,SPOONBILL_FIRST_PART=" + std::to_string(offset),
                                    "--array=" + numbers, script.string()});
     if (!answer) return answer.error();
-    jobs.push_back(answer->substr(0, answer->find_first_of(";\n")));
     begin = end;
   }
-  return jobs;
+  return {};
 }
 
-std::string joined(const std::vector<std::string>& jobs) {
-  std::string list;
-  for (const std::string& job : jobs) list += (list.empty() ? "" : ",") + job;
-  return list;
+// Returns whether tasks of this name are queued or running; empty if Slurm does not answer.
+std::optional<bool> are_any_left(const std::string& name) {
+  const auto queued = ask_slurm({"squeue", "--noheader", "--format=%i", "--name=" + name});
+  return queued ? std::optional(!queued->empty()) : std::nullopt;
 }
 
-// Returns whether any task of the jobs is still queued or running. A job that Slurm has forgotten has none.
-bool are_any_left(const std::vector<std::string>& jobs) {
-  const auto queued = ask_slurm({"squeue", "--noheader", "--format=%i", "--jobs=" + joined(jobs)});
-  return queued.ok() && !queued->empty();
-}
-
+// Returns the parts without a file. Lists the folder, because a network file system may answer a question for
+// one file from its memory.
 std::vector<int> find_missing(const SlurmJob& job) {
+  std::set<std::filesystem::path> files;
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator(parts_folder(job.folder), failure)) {
+    files.insert(entry.path());
+  }
   std::vector<int> missing;
   for (int number = 1; number <= job.count; ++number) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(part_file(job.folder, {number, job.count}), ignored))
-      missing.push_back(number);
+    if (!files.contains(part_file(job.folder, {number, job.count}))) missing.push_back(number);
   }
   return missing;
 }
 
-}  // namespace
+// Waits until every part has a file, or nothing is queued or running any more. Returns the missing parts.
+Result<std::vector<int>> wait_for_parts(const SlurmJob& job, const std::string& name,
+                                        const std::function<void(int)>& show,
+                                        const std::function<bool()>& is_stopped) {
+  auto left_since = std::chrono::steady_clock::now();  // since when nothing is queued or running
+  for (;;) {
+    for (int k = 0; k < stops_a_query; ++k) {
+      if (is_stopped()) return Error{ErrorCode::cancelled, "stopped"};
+      std::this_thread::sleep_for(stop_interval);
+    }
+    const std::vector<int> missing = find_missing(job);
+    show(job.count - static_cast<int>(missing.size()));
+    const auto now = std::chrono::steady_clock::now();
+    // As long as Slurm does not answer, its tasks may be running.
+    if (are_any_left(name).value_or(true)) left_since = now;
+    if (missing.empty() || now - left_since >= file_patience) return missing;
+  }
+}
 
-Status run_on_slurm(const SlurmJob& job, const std::function<void(int)>& show,
-                    const std::function<bool()>& is_stopped) {
+Status run_all_parts(const SlurmJob& job, const std::string& name, const std::filesystem::path& script,
+                     const std::function<void(int)>& show, const std::function<bool()>& is_stopped) {
   const auto array_limit = find_array_limit();
   if (!array_limit) return array_limit.error();
-  const std::filesystem::path script = std::filesystem::absolute(job.folder) / "slurm-task.sh";
-  if (Status written = write_script(job, script); !written) return written;
-  const auto remove_script = [&] {
-    std::error_code ignored;
-    std::filesystem::remove(script, ignored);
-  };
   std::vector<int> missing = find_missing(job);
   for (int submission = 1; !missing.empty(); ++submission) {
     if (submission > submission_limit) {
@@ -148,24 +158,28 @@ Status run_on_slurm(const SlurmJob& job, const std::function<void(int)>& show,
                                                   " tasks have failed again and again; run " +
                                                   script.string() + " by hand to see why"};
     }
-    const auto jobs = submit(missing, array_limit.value(), script);
-    if (!jobs) return jobs.error();
-    auto left_since = std::chrono::steady_clock::now();  // since when nothing is queued or running
-    while (!missing.empty()) {
-      std::this_thread::sleep_for(queue_interval);
-      if (is_stopped()) {
-        (void)ask_slurm({"scancel", joined(jobs.value())});
-        return Error{ErrorCode::cancelled, "stopped"};
-      }
-      missing = find_missing(job);
-      show(job.count - static_cast<int>(missing.size()));
-      const auto now = std::chrono::steady_clock::now();
-      if (are_any_left(jobs.value())) left_since = now;
-      if (now - left_since >= file_patience) break;
-    }
+    if (Status submitted = submit(missing, array_limit.value(), name, script); !submitted) return submitted;
+    auto still_missing = wait_for_parts(job, name, show, is_stopped);
+    if (!still_missing) return still_missing.error();
+    missing = std::move(still_missing).value();
   }
-  remove_script();
   return {};
+}
+
+}  // namespace
+
+Status run_on_slurm(const SlurmJob& job, const std::function<void(int)>& show,
+                    const std::function<bool()>& is_stopped) {
+  const std::filesystem::path script = std::filesystem::absolute(job.folder) / "slurm-task.sh";
+  if (Status written = write_script(job, script); !written) return written;
+  const std::string name = "spoonbill-" + std::to_string(getpid());
+  Status ran = run_all_parts(job, name, script, show, is_stopped);
+  if (!ran)
+    start_process({"scancel", "--name=" + name}, -1, -1);  // without waiting: a stop ends the program soon
+  std::error_code ignored;
+  const bool is_needed = !ran && ran.error().code == ErrorCode::process_failed;
+  if (!is_needed) std::filesystem::remove(script, ignored);
+  return ran;
 }
 
 }  // namespace spoonbill

@@ -22,8 +22,8 @@ struct SlurmJob {
 // Submits a task for each part and waits until every part has its file. Tasks of which nothing is queued or
 // running any more and that have left no file are submitted again, five times at most. What is done is read
 // from the files alone. An array has at most MaxArraySize - 1 tasks; more parts take several arrays.
-// `show(done)` is called whenever the number of finished parts has changed. Fails if Slurm's commands are
-// missing or refuse the job, and with ErrorCode::cancelled, after cancelling the tasks, once `is_stopped`
+// `show(done)` is called with the number of finished parts about twice a second. Fails if Slurm's commands
+// are missing or refuse the job, and with ErrorCode::cancelled, after cancelling the tasks, once `is_stopped`
 // returns true.
 Status run_on_slurm(const SlurmJob& job, const std::function<void(int)>& show,
                     const std::function<bool()>& is_stopped);

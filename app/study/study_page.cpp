@@ -11,6 +11,7 @@
 #include "app/study/case_trial.h"
 #include "app/study/spoon_measures.h"
 #include "app/study/study_tables.h"
+#include "engine/base/assert.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 
@@ -76,6 +77,7 @@ class Table {
   Table(std::string_view id, std::vector<std::string> headings) : id_(id), headings_(std::move(headings)) {}
 
   Table& row() {
+    SPOONBILL_ASSERT(rows_.empty() || column_ == headings_.size());
     rows_ += rows_.empty() ? "<tr>" : "</tr><tr>";
     column_ = 0;
     return *this;
@@ -94,6 +96,7 @@ class Table {
   }
 
   std::string finish() {
+    SPOONBILL_ASSERT(rows_.empty() || column_ == headings_.size());
     std::string text = "<div class=scroll><table class=sortable id=" + id_ + "><thead><tr>";
     for (std::size_t k = 0; k < headings_.size(); ++k) {
       text += (numeric_columns_.contains(k) ? "<th class=number>" : "<th>") + html(headings_[k]) + "</th>";
@@ -161,30 +164,35 @@ std::string answer_part(const StudyPlan& plan, const StudySummary& summary) {
   return text + table.finish() + "</section>\n";
 }
 
+std::string strip_label(const SeriesSummary& series) {
+  return series.series.base.spoon + ", " + series_label(series.series);
+}
+
 // A strip for each series: the verdict at each tilt, up to halfway to the next.
 std::string strips_part(const StudySummary& summary) {
-  constexpr double row_px = 22.0, left_px = 330.0, width_px = 620.0, top_px = 26.0;
+  constexpr double row_px = 22.0, width_px = 620.0, top_px = 26.0, letter_px = 6.2;
   double low = infinity, high = -infinity;
-  std::size_t rows = 0;
+  std::size_t rows = 0, longest = 0;
   for (const SeriesSummary& series : summary.series) {
     if (series.tilts.empty()) continue;
     ++rows;
+    longest = std::max(longest, strip_label(series).size());
     low = std::min(low, series.tilts.front().tilt_deg);
     high = std::max(high, series.tilts.back().tilt_deg);
   }
   if (rows == 0) return {};
+  const double left_px = letter_px * static_cast<double>(longest) + 16.0;
   const double scale = width_px / std::max(high - low, 1.0);
   const auto x = [&](double tilt_deg) { return left_px + (tilt_deg - low) * scale; };
   const auto px = [](double value) { return decimals_text(value, 1); };
   std::string text = section("verdicts", "Verdicts");
   text +=
-      "<p><span class=\"badge holds\">holds</span> settled, under 1 % of the mass outside the rim. "
-      "<span class=\"badge overhangs\">overhangs</span> settled, more outside. "
-      "<span class=\"badge leaves\">leaves</span> the centre of mass is outside, or 1 % of the mass is "
-      "outside "
-      "and below the rim. <span class=\"badge undecided\">undecided</span> not settled in time, or a repeat "
+      "<p><span class=\"badge holds\">holds</span> settled, under 1 % of the mass outside the rim. <span "
+      "class=\"badge overhangs\">overhangs</span> settled, more outside. <span class=\"badge "
+      "leaves\">leaves</span> the centre of mass is outside, or 1 % of the mass is outside and below the "
+      "rim. <span class=\"badge undecided\">undecided</span> not settled in time, or a repeat "
       "disagrees.</p>\n";
-  text += "<div class=scroll><svg viewBox=\"0 0 960 " +
+  text += "<div class=scroll><svg viewBox=\"0 0 " + px(left_px + width_px + 10.0) + " " +
           px(top_px + row_px * static_cast<double>(rows) + 6.0) +
           "\" role=img aria-label=\"Verdicts by tilt\">";
   for (double tilt = std::ceil(low / 10.0) * 10.0; tilt <= high; tilt += 10.0) {
@@ -194,7 +202,7 @@ std::string strips_part(const StudySummary& summary) {
   for (const SeriesSummary& series : summary.series) {
     if (series.tilts.empty()) continue;
     text += "<text x=" + px(left_px - 8.0) + " y=" + px(y + 14.0) + " class=at-end>" +
-            html(series.series.base.spoon + ", " + series_label(series.series)) + "</text>";
+            html(strip_label(series)) + "</text>";
     for (std::size_t k = 0; k < series.tilts.size(); ++k) {
       const JudgedTilt& tilt = series.tilts[k];
       const double from = k == 0 ? tilt.tilt_deg : 0.5 * (series.tilts[k - 1].tilt_deg + tilt.tilt_deg);
@@ -247,12 +255,10 @@ std::string plot_part(const StudyPlan& plan, const StudySummary& summary) {
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
   std::string text = section("quantities", "What happens at each tilt");
   text +=
-      "<div class=controls><label>Quantity <select id=quantity>"
-      "<option value=margin>margin of the centre of mass to the rim, mm</option>"
-      "<option value=outside>mass outside the rim, %</option>"
-      "<option value=spill>first spill, s after the turn began</option>"
-      "<option value=force>largest contact force, N</option></select></label> "
-      "<label>Spoon <select id=spoon>";
+      "<div class=controls><label>Quantity <select id=quantity><option value=margin>margin of the centre "
+      "of mass to the rim, mm</option><option value=outside>mass outside the rim, %</option><option "
+      "value=spill>first spill, s after the turn began</option><option value=force>largest contact "
+      "force, N</option></select></label> <label>Spoon <select id=spoon>";
   for (const StudySpoon& spoon : plan.spoons) {
     text += "<option value=\"" + html(spoon.name) + "\">" + html(spoon.name) + "</option>";
   }
@@ -269,30 +275,54 @@ std::string pictures_part(const std::vector<StudyPicture>& pictures) {
     const StudyCase& shown = picture.study_case;
     const std::string what = shown.spoon + ", " + shown.food + ", friction " + number_text(shown.friction) +
                              ", tilt " + degrees(shown.tilt_deg) + ": " + picture.verdict;
+    if (picture.png.empty()) {
+      text += "<figure><figcaption>" + html(what) + "</figcaption></figure>";
+      continue;
+    }
     text += "<figure><img alt=\"" + html(what) + "\" src=\"data:image/png;base64," + base64(picture.png) +
             "\"><figcaption>" + html(what) + "</figcaption></figure>";
   }
   return text + "</div></section>\n";
 }
 
-Result<std::string> hand_part(const StudyPlan& plan) {
+std::string bending_table(const StudyPlan& plan, const Bendings& bendings) {
+  if (bendings.empty()) return {};
+  std::string text =
+      "<p>Held level in the rear third of the handle, the front of the rim drops, under the weight of "
+      "the spoon and with the food. The stress is the largest strain times Young's modulus. Parts "
+      "thinner than a cell of the lattice are too stiff in bending.</p>\n";
+  Table table("bending", {"spoon", "material", "held, mm", "drop by its weight, mm", "with the food, mm",
+                          "largest strain, %", "stress, MPa"});
+  for (const StudySpoon& spoon : plan.spoons) {
+    for (const Material& material : plan.materials) {
+      const SpoonBending* const bending = find_bending(bendings, spoon.name, material.name);
+      if (!bending) continue;
+      const double strain = bending->with_food.largest_strain;
+      table.row().text(spoon.name).text(material.name).number(1e3 * bending->hand_m, 0);
+      table.number(1e3 * bending->own_weight.drop_m, 4).number(1e3 * bending->with_food.drop_m, 4);
+      table.number(100.0 * strain, 4).number(1e-6 * strain * material.youngs_modulus_pa, 3);
+    }
+  }
+  return text + table.finish();
+}
+
+Result<std::string> hand_part(const StudyPlan& plan, const Bendings& bendings) {
   const double food_kg = find_food_kg(plan.foods.front());
   std::string text = section("hand", "In the hand");
   text +=
       "<p>Weight and balance are exact integrals over the surface. The torque is that of the spoon, held "
-      "level "
-      "with " +
+      "level with " +
       grams_text(food_kg) +
-      " of food over the centre of the rim, about the hand. The force is "
-      "the torque divided by a skin friction of " +
+      " of food over the centre of the rim, about the hand. The force is the torque divided by a skin "
+      "friction of " +
       number_text(skin_friction) +
       " (smooth vinyl, Buchholz et al. 1988) and the width of the handle: a measure for ranking, not a "
-      "measured force. Its shares are of grip forces in early rheumatoid arthritis (TIRA 2005): the upper "
-      "bound "
-      "of the weakest group, 114 N, and the lower bounds of the others, 116, 214 and 328 N.</p>\n";
+      "measured force. Its shares are of grip forces in early rheumatoid arthritis (TIRA 2005): the "
+      "upper bound of the weakest group, 114 N, and the lower bounds of the others, 116, 214 and 328 "
+      "N.</p>\n";
   Table table("measures",
               {"spoon", "material", "weight, g", "balance from the end, mm", "of length, mm", "hand at, mm",
-               "width, mm", "torque, N mm", "force, N", "of 114 N", "of 116 N", "of 214 N", "of 328 N"});
+               "width, mm", "torque, N mm", "force, N", "of 114 / 116 / 214 / 328 N"});
   for (const StudySpoon& spoon : plan.spoons) {
     for (const Material& material : plan.materials) {
       auto measures = measure_spoon(spoon, material, food_kg);
@@ -316,6 +346,17 @@ Result<std::string> hand_part(const StudyPlan& plan) {
       table.text("no handle");
       for (int k = 0; k < 4; ++k) table.text("");
     }
+  }
+  return text + table.finish() + bending_table(plan, bendings) + "</section>\n";
+}
+
+std::string ratings_part(const StudyPlan& plan) {
+  if (plan.ratings.empty()) return {};
+  std::string text = section("ratings", "What people think of them");
+  text += "<p>Ratings from 1 (bad) to 7 (good), as given in the study file.</p>\n";
+  Table table("rated", {"spoon", "rating", "by", "note"});
+  for (const SpoonRating& rating : plan.ratings) {
+    table.row().text(rating.spoon).number(rating.rating, 0).text(rating.by).long_text(rating.note);
   }
   return text + table.finish() + "</section>\n";
 }
@@ -348,18 +389,16 @@ std::string trust_part(const StudyPlan& plan, const CaseResults& results, const 
   } else {
     text +=
         "<p>At each change of verdict, the cases on both sides were repeated with half the step and with "
-        "finer "
-        "cells: " +
+        "finer cells: " +
         std::to_string(trust.repeats) + " repeats. The verdict differs in " +
         std::to_string(trust.disagreements.size()) +
-        " of them; these tilts count as undecided. Where both spill, the time of the first spill differs by "
-        "at "
-        "most " +
+        " of them; these tilts count as undecided. Where both spill, the time of the first spill differs "
+        "by at most " +
         decimals_text(100.0 * trust.largest_time_change, 1) +
         " %; the overhanging mass of food that does not yield by at most " +
         decimals_text(100.0 * trust.largest_mass_change, 1) +
-        " percentage points. Where the food yields, its verdict and the time of its first spill are to be "
-        "trusted, the grams are not.</p>\n";
+        " percentage points. Where the food yields, its verdict and the time of its first spill are to "
+        "be trusted, the grams are not.</p>\n";
   }
   if (!trust.disagreements.empty()) {
     Table table("disagreements", {"repeat", "usual", "repeated"});
@@ -392,10 +431,9 @@ std::string claim_part(const StudySummary& summary) {
   std::string text = section("claim", "The claim of the paper");
   text +=
       "<p>Pungotra et al. (2013) report that jelly on a spoon held straight spills over the front, stays "
-      "with "
-      "the front lifted by 10°, and spills over the back at 20°. They state no data of the gelatin, the "
-      "helping or the bowl. Food that yields under 0.3 of the pressure of its own "
-      "height is a liquid, which a trial does not judge.</p>\n";
+      "with the front lifted by 10°, and spills over the back at 20°. They state no data of the gelatin, "
+      "the helping or the bowl. Food that yields under 0.3 of the pressure of its own height is a "
+      "liquid, which a trial does not judge.</p>\n";
   Table table("claims", {"spoon", "setting", "0°", "10°", "20°", "reading"});
   int tried = 0, reproduced = 0;
   for (const SeriesSummary& series : summary.series) {
@@ -423,8 +461,8 @@ std::string claim_part(const StudySummary& summary) {
 std::string cases_part(const CaseResults& results) {
   std::string text = section("cases", "All cases");
   text +=
-      "<p class=note>Click a heading to sort. The margin is the distance of the centre of mass from the rim. "
-      "The first spill is in seconds after the turn began; a negative time is before it.</p>\n";
+      "<p class=note>Click a heading to sort. The margin is the distance of the centre of mass from the "
+      "rim. The first spill is in seconds after the turn began; a negative time is before it.</p>\n";
   Table table("all",
               {"spoon", "food", "friction", "varied", "tilt", "repeat", "verdict", "outside, g", "left, g",
                "over the", "margin, mm", "first spill, s", "largest force, N", "motion, s", "nodes"});
@@ -459,17 +497,15 @@ std::string cases_part(const CaseResults& results) {
 std::string method_part(const StudyPlan& plan) {
   std::string text = section("method", "How it was found");
   text +=
-      "<p>Each case is a trial under gravity with true weights and stiffness: the food is lowered level over "
-      "the "
-      "centre of the rim, comes to rest for at most " +
+      "<p>Each case is a trial under gravity with true weights and stiffness: the food is lowered level "
+      "over the centre of the rim, comes to rest for at most " +
       number_text(case_settling_s) +
-      " s, and the spoon tilts at 30 degrees a second about the axis across the rim. A case ends when no "
-      "node "
-      "moves faster than 0.1 mm/s for 0.2 s, when the food has left, or after " +
-      number_text(case_motion_s) +
-      " s. The rim is the ridge around the bowl; outside is beyond it along the normal of its plane, which "
-      "turns "
-      "with the spoon.</p>\n<ul>";
+      " s, and the spoon tilts at 30 degrees a second about the axis across the rim. A case ends when "
+      "the food's centre of mass stays within " +
+      number_text(1e3 * case_rest_distance_m) + " mm for " + number_text(case_rest_s) +
+      " s, when the food has left, or after " + number_text(case_motion_s) +
+      " s. The rim is the ridge around the bowl; outside is beyond it along the normal of its plane, "
+      "which turns with the spoon.</p>\n<ul>";
   for (const StudyFood& food : plan.foods) {
     const Vector3 size = bounding_box(food.body.surface.net).extent();
     const Material& material = food.body.material;
@@ -493,25 +529,27 @@ std::string method_part(const StudyPlan& plan) {
 }  // namespace
 
 Result<std::string> make_study_page(const StudyPlan& plan, const CaseResults& results,
-                                    const StudySummary& summary, const std::vector<StudyPicture>& pictures) {
+                                    const StudySummary& summary, const Bendings& bendings,
+                                    const std::vector<StudyPicture>& pictures) {
   const std::filesystem::path folder = std::filesystem::path(assets_folder) / "report";
   const auto style = read_file(folder / "study.css", page_part_limit_bytes);
   if (!style) return style.error();
   const auto script = read_file(folder / "study.js", page_part_limit_bytes);
   if (!script) return script.error();
-  const auto hand = hand_part(plan);
+  const auto hand = hand_part(plan, bendings);
   if (!hand) return hand.error();
   std::string names;
   for (const StudySpoon& spoon : plan.spoons) names += (names.empty() ? "" : ", ") + spoon.name;
   std::string page =
-      "<!doctype html>\n<html lang=en><head><meta charset=utf-8>"
-      "<meta name=viewport content=\"width=device-width, initial-scale=1\"><title>" +
+      "<!doctype html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+      "content=\"width=device-width, initial-scale=1\"><title>" +
       html("Does the food stay on " + names + "?") + "</title>\n<style>\n" + style.value() +
       "</style></head><body>\n<h1>Does the food stay on the spoon?</h1>\n<p>" + html(names) + ". " +
       std::to_string(results.size()) + " cases.</p>\n";
   page +=
       answer_part(plan, summary) + strips_part(summary) + plot_part(plan, summary) + pictures_part(pictures);
-  page += hand.value() + factors_part(plan, summary) + trust_part(plan, results, summary);
+  page +=
+      hand.value() + ratings_part(plan) + factors_part(plan, summary) + trust_part(plan, results, summary);
   page += claim_part(summary) + cases_part(results) + method_part(plan);
   return page + "<script>\n" + script.value() + "</script>\n</body></html>\n";
 }

@@ -8,14 +8,6 @@
 #include "engine/base/file.h"
 
 namespace spoonbill {
-namespace {
-
-std::filesystem::path parts_folder(const std::filesystem::path& folder) {
-  return folder / "parts";
-}
-
-}  // namespace
-
 std::vector<StudyCase> cases_of_part(const StudyPart& part, const std::vector<StudyCase>& cases) {
   std::vector<StudyCase> own;
   for (auto k = static_cast<std::size_t>(part.number - 1); k < cases.size();
@@ -66,8 +58,9 @@ Result<std::size_t> merge_parts(const std::filesystem::path& folder, const Study
       ++added;
     }
   }
-  for (const std::filesystem::path& file : files) std::filesystem::remove(file, failure);
-  std::filesystem::remove(parts_folder(folder), failure);  // if it is empty now
+  if (Status flushed = cases.flush(); !flushed) return flushed.error();
+  // A task that was killed while it wrote has left an unfinished file as well.
+  std::filesystem::remove_all(parts_folder(folder), failure);
   return added;
 }
 

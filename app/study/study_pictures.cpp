@@ -10,7 +10,6 @@
 #include "app/frames/frame_painter.h"
 #include "app/frames/model_picture.h"
 #include "app/study/case_trial.h"
-#include "engine/base/text.h"
 #include "render/image.h"
 
 namespace spoonbill {
@@ -27,14 +26,23 @@ std::string describe_end(const CaseResult& result) {
   return text;
 }
 
-// Keeps letters, digits, - and _ of a name; each other character becomes -.
-std::string file_name_part(std::string name) {
-  for (char& letter : name) {
-    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
-                          (letter >= '0' && letter <= '9') || letter == '-' || letter == '_';
-    if (!is_plain) letter = '-';
-  }
-  return name;
+// Returns the bytes of the picture of a scene.
+Result<std::string> paint(const Scene& scene, const std::string& source) {
+  const auto shown = show_scene(scene, source);
+  if (!shown) return shown.error();
+  PictureSettings settings;
+  settings.direction = {azimuth_deg * std::numbers::pi / 180.0, elevation_deg * std::numbers::pi / 180.0};
+  settings.width_px = width_px;
+  settings.height_px = height_px;
+  auto painter = FramePainter::make(width_px, height_px);
+  if (!painter) return painter.error();
+  Image image;
+  const ViewSettings view = make_picture_view(shown.value(), settings);
+  if (Status painted = painter->paint(shown->snapshot, view, {}, image); !painted) return painted.error();
+  PngEncoder encoder;
+  const auto bytes = encoder.encode(image);
+  if (!bytes) return bytes.error();
+  return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
 }  // namespace
@@ -59,28 +67,18 @@ Result<StudyPicture> make_study_picture(const StudyPlan& plan, const StudyCase& 
   const auto result = run_case(
       plan, study_case, [&](const Trial&, const Simulation&) { return !is_stopped(); }, &end);
   if (!result) return result.error();
-  if (!result->failure.empty()) return Error{ErrorCode::not_converged, result->failure};
-  const auto shown = show_scene(end, study_case.spoon);
-  if (!shown) return shown.error();
-  PictureSettings settings;
-  settings.direction = {azimuth_deg * std::numbers::pi / 180.0, elevation_deg * std::numbers::pi / 180.0};
-  settings.width_px = width_px;
-  settings.height_px = height_px;
-  auto painter = FramePainter::make(width_px, height_px);
-  if (!painter) return painter.error();
-  Image image;
-  if (Status painted = painter->paint(shown->snapshot, make_picture_view(shown.value(), settings), {}, image);
-      !painted) {
-    return painted.error();
+  StudyPicture picture{study_case, {}, {}};
+  if (!result->failure.empty()) {
+    picture.verdict = "not judged: " + result->failure;
+    return picture;
   }
-  PngEncoder encoder;
-  const auto bytes = encoder.encode(image);
-  if (!bytes) return bytes.error();
-  StudyPicture picture{study_case,
-                       describe_end(result.value()),
-                       std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()),
-                       {}};
-  picture.file = file_name_part(study_case.spoon) + "-tilt" + number_text(study_case.tilt_deg) + ".png";
+  picture.verdict = describe_end(result.value());
+  auto png = paint(end, study_case.spoon);
+  if (png) {
+    picture.png = std::move(png).value();
+  } else {
+    picture.verdict += ", without a picture: " + png.error().message;
+  }
   return picture;
 }
 

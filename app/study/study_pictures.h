@@ -14,8 +14,8 @@ namespace spoonbill {
 // the usual friction.
 std::vector<StudyCase> list_pictured_cases(const StudyPlan& plan);
 
-// Runs a case and paints its end. Fails if the case cannot be judged, and with ErrorCode::cancelled if
-// `is_stopped` returns true.
+// Runs a case and paints its end. A case that cannot be judged or painted gives a picture without bytes, with
+// the reason in `verdict`. ErrorCode::cancelled if `is_stopped` returns true.
 Result<StudyPicture> make_study_picture(const StudyPlan& plan, const StudyCase& study_case,
                                         const std::function<bool()>& is_stopped);
 

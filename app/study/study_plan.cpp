@@ -8,6 +8,8 @@
 
 #include "app/assets_folder.h"
 #include "engine/base/text.h"
+#include "engine/bspline/strip_volumes.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/field_reader.h"
 #include "engine/scene/place_body.h"
@@ -17,9 +19,12 @@ namespace spoonbill {
 namespace {
 
 constexpr int study_version = 1;
+// Number of the way in which cases are run; grows when the same case would have another result.
+constexpr int study_method = 1;
 constexpr std::size_t study_file_limit_bytes = std::size_t{1} << 20;
 constexpr std::array<double, 3> usual_size_mm{28.0, 14.0, 22.0};
 constexpr Range<double> food_size_range_m{1e-3, 0.2};
+constexpr std::size_t longest_name = 100;  // bytes
 // Rate at which yielding food flows, per second: its stress relaxes within some milliseconds.
 constexpr double usual_flow_rate_per_s = 300.0;
 // Gelatin that yields at a third of the pressure of its own height, just above what a trial refuses as
@@ -52,7 +57,7 @@ std::vector<double> read_numbers(FieldReader& reader, const char* field, Range<d
                     ErrorCode::inconsistent);
       return {};
     }
-    numbers.push_back(number);
+    numbers.push_back(number + 0.0);  // which makes -0 a 0
   }
   return numbers;
 }
@@ -61,15 +66,23 @@ Result<Material> read_named_material(const std::string& name) {
   return read_material(asset("materials", name));
 }
 
+// Refuses a body that is not bounded by one closed surface with outward normals.
+Status check_solid(const Body& body) {
+  const bool is_plain = !body.mesh && !body.shell_thickness_m && body.trims.empty();
+  if (is_plain && check_closed(body.surface).ok() && compute_closed_volume_m3(body.surface) > 0.0) return {};
+  return Error{ErrorCode::unsupported,
+               "body \"" + excerpt(body.name) +
+                   "\": must be one closed surface with outward normals, without trims "
+                   "and shell thickness"};
+}
+
 // Returns food of a shape and a size.
 Result<StudyFood> make_food(const std::string& name, const std::filesystem::path& shape, Material material,
                             const Vector3& size_m) {
   auto document = read_document(shape);
   if (!document) return document.error();
   StudyFood food{name, document->scene.bodies.front()};
-  if (food.body.mesh) {
-    return Error{ErrorCode::unsupported, shape.string() + ": food must be a body with a surface", "shape"};
-  }
+  if (Status solid = check_solid(food.body); !solid) return solid.error().in(shape.string());
   food.body.loads.clear();
   food.body.supports.clear();
   food.body.regions.clear();
@@ -124,8 +137,21 @@ Result<StudySpoon> read_spoon(const std::filesystem::path& file) {
                                           " bodies; merge the parts of a spoon before a study"};
   }
   StudySpoon spoon{file.stem().string(), file, std::move(document->scene.bodies.front()), {}};
-  spoon.body.loads.clear();
-  spoon.body.supports.clear();
+  Body& body = spoon.body;
+  // Names are written into files that are read again.
+  if (spoon.name.empty() || spoon.name.size() > longest_name || escaped(spoon.name) != spoon.name) {
+    return Error{ErrorCode::out_of_range, file.string() + ": the name of a spoon's file must have at most " +
+                                              std::to_string(longest_name) +
+                                              " bytes of plain text; rename the file"};
+  }
+  if (Status solid = check_solid(body); !solid) return solid.error().in(file.string());
+  // A study holds and turns the spoon itself, and sets its friction.
+  body.kind = BodyKind::fixed;
+  body.loads.clear();
+  body.supports.clear();
+  body.regions.clear();
+  body.hand.reset();
+  body.motion.reset();
   auto bowl = find_bowl(spoon.body, Vector3::UnitY());
   if (!bowl) return bowl.error().in(file.string());
   spoon.bowl = std::move(bowl).value();
@@ -164,14 +190,14 @@ Range<double> factor_range(StudyFactor factor) {
   return factor == StudyFactor::stiffness ? Range<double>{0.01, 100.0} : bowl_factor_range;
 }
 
-// Returns the first name that two of a list have; empty if all differ.
+// Returns the first name that two of a list have.
 template <class Named>
-std::string find_repeated_name(const std::vector<Named>& list) {
+std::optional<std::string> find_repeated_name(const std::vector<Named>& list) {
   std::set<std::string> names;
   for (const Named& named : list) {
     if (!names.insert(named.name).second) return named.name;
   }
-  return {};
+  return std::nullopt;
 }
 
 void read_variations(FieldReader reader, StudyPlan& plan) {
@@ -227,6 +253,18 @@ Status read_study(const std::filesystem::path& file, StudyPlan& plan) {
       plan.materials.push_back(std::move(material).value());
     }
   }
+  if (reader.has("ratings")) {
+    const Json& list = reader.list("ratings", {0, 1000});
+    for (std::size_t k = 0; list.is_array() && k < list.size() && reader.status().ok(); ++k) {
+      FieldReader one = reader.element(list[k], "ratings", k);
+      SpoonRating& rating = plan.ratings.emplace_back();
+      rating.spoon = one.text("spoon");
+      rating.rating = one.integer("rating", rating_range);
+      if (one.has("by")) rating.by = one.text("by");
+      if (one.has("note")) rating.note = one.text("note");
+      one.finish();
+    }
+  }
   if (reader.has("foods")) {
     plan.foods.clear();
     const Json& list = reader.list("foods", {1, 20});
@@ -235,8 +273,8 @@ Status read_study(const std::filesystem::path& file, StudyPlan& plan) {
       if (!food) return reader.status().ok() ? food.error().in(source) : reader.status();
       plan.foods.push_back(std::move(food).value());
     }
-    if (const std::string name = find_repeated_name(plan.foods); !name.empty()) {
-      reader.refuse("foods", "two foods have the name \"" + excerpt(name) + "\"", ErrorCode::duplicate);
+    if (const auto name = find_repeated_name(plan.foods)) {
+      reader.refuse("foods", "two foods have the name \"" + excerpt(*name) + "\"", ErrorCode::duplicate);
     }
   }
   reader.finish();
@@ -282,14 +320,23 @@ Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoo
     if (!read) return read.error();
     plan.spoons.push_back(std::move(read).value());
   }
-  if (const std::string name = find_repeated_name(plan.spoons); !name.empty()) {
-    return Error{ErrorCode::duplicate, "two spoons have the name \"" + excerpt(name) + "\"; rename a file"};
+  if (const auto name = find_repeated_name(plan.spoons)) {
+    return Error{ErrorCode::duplicate, "two spoons have the name \"" + excerpt(*name) + "\"; rename a file"};
+  }
+  for (const SpoonRating& rating : plan.ratings) {
+    if (std::none_of(plan.spoons.begin(), plan.spoons.end(),
+                     [&](const StudySpoon& spoon) { return spoon.name == rating.spoon; })) {
+      return Error{
+          ErrorCode::unknown,
+          file.string() + ": ratings: no spoon of this study has the name \"" + excerpt(rating.spoon) + "\"",
+          "ratings"};
+    }
   }
   return plan;
 }
 
 Json plan_to_json(const StudyPlan& plan) {
-  Json json = Json::object();
+  Json json = {{"method", study_method}};
   for (const StudySpoon& spoon : plan.spoons) {
     json["spoons"].push_back({{"name", spoon.name}, {"shape", hash_shape(spoon.body)}});
   }

@@ -37,6 +37,13 @@ struct StudyVariation {
   std::vector<double> values;
 };
 
+// A person's rating of a spoon, from 1 (bad) to 7 (good).
+struct SpoonRating {
+  std::string spoon, by, note;
+  int rating = 4;
+};
+inline constexpr Range<int> rating_range{1, 7};
+
 struct StudyPlan {
   std::vector<StudySpoon> spoons;
   std::vector<StudyFood> foods;
@@ -53,6 +60,7 @@ struct StudyPlan {
   // Range of the wrist's deviation while feeding: ulnar is negative, radial is positive and lifts the front.
   Range<double> wrist_deg{-20.0, 5.0};
   std::string wrist_source;
+  std::vector<SpoonRating> ratings;
 };
 
 inline constexpr Range<double> study_tilt_range_deg{-60.0, 60.0};
@@ -71,12 +79,13 @@ inline constexpr Range<double> study_friction_range{0.0, 2.0};
 //             "bowl_curvature": [], "pitch_deg": [-10]},
 //    "claim": true,  "repeats": true,  "frames_deg": [0, 10, 20],
 //    "materials": ["polypropylene", "steel-304"],
-//    "wrist_deg": [-20, 5]}
+//    "wrist_deg": [-20, 5],
+//    "ratings": [{"spoon": "spoon-bent", "by": "a therapist", "rating": 6, "note": "easy to hold"}]}
 //
 // Every field but the version is optional. "shape" is a document whose first body is the food's shape;
 // without it, the food is a rounded helping. A yield strain makes the food yield. An empty `file` stands for
 // the defaults. Errors name the file and the field: an unknown field, an empty or descending list, a missing
-// model, and a spoon without a bowl.
+// model, and a spoon without a bowl or with another name than plain text.
 Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoons,
                                   const std::filesystem::path& file);
 

@@ -50,26 +50,27 @@ void find_holding_range(SeriesSummary& summary) {
   if (!run) return;
   const auto& [first, last] = *run;
   const std::vector<JudgedTilt>& tilts = summary.tilts;
-  summary.is_open_low = first == 0;
-  summary.is_open_high = last + 1 == tilts.size();
-  // An end is between the last tilt that holds and the next that is decided and does not.
-  const auto next_decided = [&](std::size_t from, int step) {
-    std::size_t at = from;
-    while (tilts[at].verdict == Verdict::undecided && at != 0 && at + 1 != tilts.size()) {
-      at = step > 0 ? at + 1 : at - 1;
+  // An end is halfway between the last tilt that holds and the next that is decided and does not. Without
+  // such a tilt, the range is open.
+  const auto find_decided = [&](std::size_t from, int step) -> std::optional<double> {
+    for (auto at = static_cast<std::ptrdiff_t>(from) + step;
+         at >= 0 && at < static_cast<std::ptrdiff_t>(tilts.size()); at += step) {
+      const JudgedTilt& tilt = tilts[static_cast<std::size_t>(at)];
+      if (tilt.verdict != Verdict::undecided) return tilt.tilt_deg;
     }
-    return tilts[at].tilt_deg;
+    return std::nullopt;
   };
   double low = tilts[first].tilt_deg, high = tilts[last].tilt_deg, low_open = 0.0, high_open = 0.0;
-  if (!summary.is_open_low) {
-    const double outside = next_decided(first - 1, -1);
-    low_open = 0.5 * (low - outside);
-    low = 0.5 * (low + outside);
+  const std::optional<double> below = find_decided(first, -1), above = find_decided(last, 1);
+  summary.is_open_low = !below;
+  summary.is_open_high = !above;
+  if (below) {
+    low_open = 0.5 * (low - *below);
+    low = 0.5 * (low + *below);
   }
-  if (!summary.is_open_high) {
-    const double outside = next_decided(last + 1, 1);
-    high_open = 0.5 * (outside - high);
-    high = 0.5 * (high + outside);
+  if (above) {
+    high_open = 0.5 * (*above - high);
+    high = 0.5 * (high + *above);
   }
   summary.holds_deg = Range<double>{low, high};
   summary.best_deg = 0.5 * (low + high);
@@ -95,7 +96,7 @@ void compare_repeat(const StudyPlan& plan, const DoneCase& repeat, const CaseRes
   const auto food = std::find_if(plan.foods.begin(), plan.foods.end(), [&](const StudyFood& named) {
     return named.name == repeat.study_case.food;
   });
-  if (usual.verdict == Verdict::overhangs && !food->body.material.plastic) {
+  if (usual.verdict == Verdict::overhangs && food != plan.foods.end() && !food->body.material.plastic) {
     trust.largest_mass_change =
         std::max(trust.largest_mass_change,
                  std::abs(again.outside_kg / again.food_kg - usual.outside_kg / usual.food_kg));

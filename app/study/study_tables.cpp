@@ -118,7 +118,26 @@ std::string cases_csv(const CaseResults& results) {
   return text;
 }
 
-Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const StudySummary& summary) {
+const SpoonBending* find_bending(const Bendings& bendings, const std::string& spoon,
+                                 const std::string& material) {
+  const auto found = bendings.find({spoon, material});
+  return found == bendings.end() ? nullptr : &found->second;
+}
+
+Bendings bend_all(const StudyPlan& plan) {
+  Bendings bendings;
+  const double food_kg = find_food_kg(plan.foods.front());
+  for (const StudySpoon& spoon : plan.spoons) {
+    for (const Material& material : plan.materials) {
+      const auto bending = bend_spoon(spoon, material, food_kg);
+      if (bending) bendings.emplace(std::pair{spoon.name, material.name}, bending.value());
+    }
+  }
+  return bendings;
+}
+
+Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const StudySummary& summary,
+                        const Bendings& bendings) {
   Json json = {{"spoonbill_study_result", 1}, {"plan", plan_to_json(plan)}, {"cases", results.size()}};
   json["spoons"] = Json::array();
   for (const StudySpoon& spoon : plan.spoons) {
@@ -128,7 +147,15 @@ Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const
     for (const Material& material : plan.materials) {
       const auto measures = measure_spoon(spoon, material, find_food_kg(plan.foods.front()));
       if (!measures) return measures.error();
-      one["materials"][material.name] = measures_json(measures.value());
+      Json& of_material = one["materials"][material.name];
+      of_material = measures_json(measures.value());
+      of_material["bending"] = Json();
+      if (const SpoonBending* const bending = find_bending(bendings, spoon.name, material.name)) {
+        of_material["bending"] = {{"hand_m", bending->hand_m},
+                                  {"own_weight_m", bending->own_weight.drop_m},
+                                  {"with_food_m", bending->with_food.drop_m},
+                                  {"largest_strain", bending->with_food.largest_strain}};
+      }
     }
     json["spoons"].push_back(one);
   }
@@ -143,6 +170,11 @@ Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const
         {{"case", case_key(one.repeat)},
          {"usual", verdict_names[static_cast<std::size_t>(one.usual)]},
          {"repeated", verdict_names[static_cast<std::size_t>(one.repeated)]}});
+  }
+  json["ratings"] = Json::array();
+  for (const SpoonRating& rating : plan.ratings) {
+    json["ratings"].push_back(
+        {{"spoon", rating.spoon}, {"by", rating.by}, {"rating", rating.rating}, {"note", rating.note}});
   }
   json["failures"] = Json::array();
   for (const DoneCase* const failure : summary.failures) {

@@ -34,7 +34,9 @@
   const quantity = document.getElementById("quantity");
   const spoon = document.getElementById("spoon");
   const colours = ["#1f5f8b", "#b8432f", "#2a7d4f", "#8a5aa8", "#d98a21", "#3b8f93", "#7a6a4f", "#c2548f"];
-  const width = 900, height = 340, left = 60, right = 250, top = 14, bottom = 44;
+  const plotWidth = 590, left = 60, top = 14, bottom = 44, legendRow = 17, letter = 6.2;
+  const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
+  const most = (values) => values.reduce((a, b) => Math.max(a, b), -Infinity);
   const element = (name, attributes, text) => {
     const made = document.createElementNS("http://www.w3.org/2000/svg", name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
@@ -52,14 +54,18 @@
     plot.replaceChildren();
     const shown = series.filter((one) => one.spoon === spoon.value);
     const field = quantity.value;
+    const right = 60 + letter * most([0, ...shown.map((one) => one.label.length)]);
+    const width = left + plotWidth + right;
+    const height = Math.max(340, top + legendRow * (shown.length + 1) + bottom);
+    plot.setAttribute("viewBox", "0 0 " + width + " " + height);
     const values = shown.flatMap((one) => one.points.map((point) => point[field])).filter((y) => y !== null);
     const tilts = shown.flatMap((one) => one.points.map((point) => point.tilt));
     if (values.length === 0) {
       plot.append(element("text", { x: left, y: 40 }, "No case has a value of this quantity."));
       return;
     }
-    const xLow = Math.min(...tilts), xHigh = Math.max(...tilts, xLow + 1);
-    const yLow = Math.min(0, ...values), yHigh = Math.max(...values, yLow + 1e-6);
+    const xLow = least(tilts), xHigh = Math.max(most(tilts), xLow + 1);
+    const yLow = Math.min(0, least(values)), yHigh = Math.max(most(values), yLow + 1e-6);
     const x = (tilt) => left + (tilt - xLow) / (xHigh - xLow) * (width - left - right);
     const y = (value) => height - bottom - (value - yLow) / (yHigh - yLow) * (height - top - bottom);
     for (const value of steps(yLow, yHigh)) {
@@ -75,8 +81,9 @@
       "tilt (positive lifts the front)"));
     shown.forEach((one, index) => {
       const colour = colours[index % colours.length];
+      const dashes = ["none", "7 3", "2 3"][Math.floor(index / colours.length) % 3];
       const points = one.points.filter((point) => point[field] !== null);
-      plot.append(element("polyline", { fill: "none", stroke: colour, "stroke-width": 1.6,
+      plot.append(element("polyline", { fill: "none", stroke: colour, "stroke-width": 1.6, "stroke-dasharray": dashes,
         points: points.map((point) => x(point.tilt) + "," + y(point[field])).join(" ") }));
       for (const point of points) {
         const dot = element("circle", { cx: x(point.tilt), cy: y(point[field]), r: 3.2, fill: colour });
@@ -84,9 +91,9 @@
           Number(point[field].toPrecision(4)) + ", " + point.verdict));
         plot.append(dot);
       }
-      const row = top + 14 + 17 * index;
+      const row = top + 14 + legendRow * index;
       plot.append(element("line", { x1: width - right + 14, x2: width - right + 34, y1: row - 4, y2: row - 4,
-        stroke: colour, "stroke-width": 2 }));
+        stroke: colour, "stroke-width": 2, "stroke-dasharray": dashes }));
       plot.append(element("text", { x: width - right + 40, y: row }, one.label));
     });
   };

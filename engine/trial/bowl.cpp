@@ -238,7 +238,10 @@ void set_frame(const Surface& surface, const Rim& rim, const Vector3& body_centr
     const Vector3& next = points[(k + 1) % points.size()];
     box.include({bowl.front.dot(points[k]), bowl.left().dot(points[k])});
     turned_m2 += points[k].cross(next).dot(bowl.normal);
-    if (bowl.front.dot(points[k]) > bowl.front.dot(points[first])) first = k;
+    const auto aside_m = [&](const Vector3& point) {
+      return bowl.front.dot(point) > 0.0 ? std::abs(bowl.left().dot(point)) : infinity;
+    };
+    if (aside_m(points[k]) < aside_m(points[first])) first = k;
   }
   bowl.length_m = box.extent().x();
   bowl.width_m = box.extent().y();
@@ -295,6 +298,8 @@ Result<Bowl> find_bowl(const Body& body, const Vector3& up) {
   }
   set_frame(body.surface, *rim, extent.centre(), bowl);
   bowl.depth_m = find_depth_m(HeightMap(body.surface, above, cell_m), *rim, above, bowl);
+  // A known rim may be that of a plate or a dome.
+  if (!(bowl.depth_m >= least_depth_fraction * extent.extent().maxCoeff())) return no_bowl;
   return bowl;
 }
 

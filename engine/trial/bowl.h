@@ -12,7 +12,8 @@ namespace spoonbill {
 // A bowl, in the position of its body. Plain data. The sides of the frame, seen from above with the front
 // ahead: `left()` is on the left.
 struct Bowl {
-  // Corners of the rim as in Body::rim, counter-clockwise seen from above; the first is at the front.
+  // Corners of the rim as in Body::rim, counter-clockwise seen from above; the first is straight ahead of the
+  // centre.
   std::vector<Vector2> rim;
   Vector3 centre_m = Vector3::Zero();    // of the rim
   Vector3 normal = Vector3::UnitY();     // of the rim's plane (Rim), upwards

@@ -160,19 +160,19 @@ std::string content(const std::filesystem::path& file) {
 TEST(Study, GoesOnAfterItWasKilled) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Workplace place;
-  place.write("study.json", R"({"spoonbill_study": 1, "tilts_deg": [-12, 0, 12], "frictions": [0.02, 0.3],
-      "vary": {"helping": [0.9]}, "claim": false, "repeats": false, "frames_deg": [12],
+  place.write("study.json", R"({"spoonbill_study": 1, "tilts_deg": [0, 12], "frictions": [0.1],
+      "vary": {"helping": [0.9]}, "claim": false, "repeats": false, "frames_deg": [],
       "foods": [{"name": "gelatin", "material": "gelatin-20-1", "size_mm": [24, 12, 20]}]})");
   const auto arguments = [&](const std::string& out, const std::string& workers) {
-    return std::vector<std::string>{"study",     spoon_folder + "spoon-original.json",
+    return std::vector<std::string>{"study",     spoon_folder + "spoon-bowl.json",
                                     "--file",    place.text("study.json"),
                                     "--out",     place.text(out),
                                     "--workers", workers};
   };
   const Outcome whole = run_process(SPOONBILL_PROGRAM, arguments("whole", "2"));
   ASSERT_EQ(whole.code, exit_done) << whole.err;
-  // The line that identifies the plan has about a thousand bytes, and each case about five hundred.
-  run_and_kill(SPOONBILL_PROGRAM, arguments("killed", "1"), place.path("killed") / "cases.jsonl.part", 2500);
+  // The line that identifies the plan has about a thousand bytes, and each case about six hundred.
+  run_and_kill(SPOONBILL_PROGRAM, arguments("killed", "1"), place.path("killed") / "cases.jsonl.part", 1700);
   EXPECT_FALSE(std::filesystem::exists(place.path("killed") / "cases.jsonl"));
   const Outcome again = run_process(SPOONBILL_PROGRAM, arguments("killed", "1"));
   ASSERT_EQ(again.code, exit_done) << again.err;
@@ -181,10 +181,32 @@ TEST(Study, GoesOnAfterItWasKilled) {
     EXPECT_EQ(content(entry.path()), content(place.path("killed") / entry.path().filename())) << entry.path();
     ++files;
   }
-  EXPECT_EQ(files, 5);  // study.html, study.json, cases.csv, cases.jsonl and a picture
+  EXPECT_EQ(files, 4);  // study.html, study.json, cases.csv and cases.jsonl
+  // Known cases are not run again: a number of nodes that no trial has stays.
+  std::string known = content(place.path("whole") / "cases.jsonl");
+  const std::string nodes = "\"nodes\":";
+  known.replace(known.find(nodes) + nodes.size(), 1, "7");
+  place.write("whole/cases.jsonl", known);
+  EXPECT_EQ(run_process(SPOONBILL_PROGRAM, arguments("whole", "2")).code, exit_done);
+  EXPECT_EQ(content(place.path("whole") / "cases.jsonl"), known);
   const Json report = json_of(content(place.path("whole") / "study.json"));
-  EXPECT_EQ(report["cases"], 9);
+  EXPECT_EQ(report["cases"], 4);
   EXPECT_TRUE(report["failures"].empty());
+}
+
+// The regions, the hand and the motion of a spoon's document play no part in a study.
+TEST(StudyCase, TakesASpoonWithRegionsAndAHand) {
+  const Workplace place;
+  Document document = read_document(spoon_folder + "spoon-rough.json").value();
+  ASSERT_FALSE(document.scene.bodies[0].regions.empty());
+  const StudyPlan rough = plan_of(spoon_folder + "spoon-rough.json");
+  EXPECT_EQ(judged(rough, usual_case(rough, 0.1, 0.0)).verdict, Verdict::holds);
+  document.scene.bodies[0].regions.clear();
+  document.scene.bodies[0].kind = BodyKind::rigid;
+  document.scene.bodies[0].hand = HandSpring();
+  ASSERT_TRUE(write_document(document, place.path("held.json")).ok());
+  const StudyPlan held = plan_of(place.text("held.json"));
+  EXPECT_EQ(judged(held, usual_case(held, 0.1, 0.0)).verdict, Verdict::holds);
 }
 
 TEST(Study, RefusesWrongUseInOneLine) {
@@ -196,6 +218,20 @@ TEST(Study, RefusesWrongUseInOneLine) {
   EXPECT_TRUE(is_clean_failure(
       run({"study", spoon_folder + "spoon-original.json", "--file", file.string(), "--out", out})));
   EXPECT_FALSE(std::filesystem::exists(out));
+  // A study file that the report would write over.
+  std::filesystem::create_directories(out);
+  const std::string own =
+      place
+          .write("out/study.json", R"({"spoonbill_study": 1, "tilts_deg": [0], "frictions": [1],
+      "vary": {}, "claim": false, "frames_deg": []})")
+          .string();
+  EXPECT_TRUE(
+      is_clean_failure(run({"study", spoon_folder + "spoon-original.json", "--file", own, "--out", out})));
+  EXPECT_EQ(
+      run({"study", spoon_folder + "spoon-original.json", "--out", out, "--part", "1/2", "--slurm"}).code,
+      exit_wrong_use);
+  EXPECT_EQ(run({"study", spoon_folder + "spoon-original.json", "--out", out, "--part", "3/2"}).code,
+            exit_wrong_use);
 }
 
 }  // namespace

@@ -102,6 +102,10 @@ TEST(Bowl, IsNotFoundWhereNothingHoldsWater) {
   EXPECT_EQ(find_bowl(handle, Vector3::UnitY()).error().code, ErrorCode::missing);
   const Body upside_down = turned(bowl_of({0.06, 0.04, 0.01, 0.001}), Vector3::UnitX(), 180.0);
   EXPECT_EQ(find_bowl(upside_down, Vector3::UnitY()).error().code, ErrorCode::missing);
+  // A rim on a ball is known, but nothing is below it.
+  Body ball = stock_body("ball", SphereSize{0.02}, Vector3::Zero(), bundled_material("abs"), 300);
+  ball.rim = {{0.0, 0.7}, {0.25, 0.7}, {0.5, 0.7}, {0.75, 0.7}};
+  EXPECT_FALSE(find_bowl(ball, Vector3::UnitY()).ok());
   Body mesh;
   mesh.mesh = std::make_shared<const CleanMesh>();
   EXPECT_EQ(find_bowl(mesh, Vector3::UnitY()).error().code, ErrorCode::unsupported);
