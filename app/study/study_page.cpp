@@ -135,8 +135,8 @@ void add_holding(const SeriesSummary& summary, const StudyPlan& plan, Table& tab
     return;
   }
   const Range<double>& holds = *summary.holds_deg;
-  std::string range = (summary.is_open_low ? "at least " : "") + degrees(holds.low) + " to " +
-                      (summary.is_open_high ? "at least " : "") + degrees(holds.high);
+  const std::string range = degrees(holds.low) + (summary.is_open_low ? " or less" : "") + " to " +
+                            degrees(holds.high) + (summary.is_open_high ? " or more" : "");
   table.number(holds.high - holds.low, range);
   const bool is_open = summary.is_open_low || summary.is_open_high;
   table.number(summary.best_deg, is_open

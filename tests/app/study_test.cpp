@@ -66,18 +66,18 @@ TEST(StudyCase, IsJudgedByTheTilt) {
 
 TEST(StudyCase, HasTheSameResultEachTime) {
   const StudyPlan plan = plan_of(spoon_folder + "spoon-original.json");
-  const StudyCase one = usual_case(plan, 0.1, 15.0);
+  const StudyCase one = usual_case(plan, 0.1, 5.0);
   EXPECT_EQ(result_to_json(judged(plan, one)).dump(), result_to_json(judged(plan, one)).dump());
 }
 
 // A change of verdict is where it is with half the step and with finer cells, for food that yields as well.
-// The last tilt before the change is tried in the full run only.
+// The last tilt before the change, and food that yields, are tried in the full run only.
 TEST(StudyCase, IsConfirmedByItsRepeats) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   StudyPlan plan = plan_of(spoon_folder + "spoon-original.json");
   for (const StudyFood& food : plan.foods) {
     for (const double tilt_deg : {22.0, 17.0}) {
-      if (tilt_deg == 17.0 && !is_full_run()) continue;
+      if ((tilt_deg == 17.0 || food.body.material.plastic) && !is_full_run()) continue;
       StudyCase one = usual_case(plan, 0.02, tilt_deg);
       one.food = food.name;
       const CaseResult usual = judged(plan, one);
@@ -111,17 +111,17 @@ TEST(StudyCase, HoldsFoodOnARimThinnerThanAFifthOfACell) {
                   .code,
               exit_done);
     const StudyPlan plan = plan_of(place.text("bowl.json"));
-    for (const double tilt_deg : {12.0, 20.0, 28.0}) {
+    for (const double tilt_deg : {20.0, 28.0}) {
       results.push_back(judged(plan, usual_case(plan, 0.1, tilt_deg)));
     }
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(results[k].verdict, results[k + 3].verdict) << k;
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(results[k].verdict, results[k + 2].verdict) << k;
     if (results[k].verdict == Verdict::leaves) continue;
-    EXPECT_NEAR(results[k].margin_m, results[k + 3].margin_m, 0.002) << k;
+    EXPECT_NEAR(results[k].margin_m, results[k + 2].margin_m, 0.002) << k;
   }
   EXPECT_EQ(results[0].verdict, Verdict::holds);
-  EXPECT_EQ(results[2].verdict, Verdict::leaves);
+  EXPECT_EQ(results[1].verdict, Verdict::leaves);
 }
 
 // A shallow, slippery bowl that dips at its front when the spoon is straight, with food laid in after the
