@@ -162,7 +162,7 @@ FIGURES = (
     Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill --version`", "version"),
     Figure("start_ms", "ms", "ours", "at most", 50, START + "`spoonbill info` of the trimmed plate", "info"),
     Figure("study_case_s", "s", "ours", "at most", 3,
-           "a study of one case, gelatin on the original spoon at a friction of 0.1: processor time of the whole "
+           "a study of one case, gelatin in the bundled bowl at a friction of 0.1: processor time of the whole "
            "program, the longest of seven tilts"),
 )
 

@@ -102,7 +102,7 @@ class Measurements:
                 "frames_deg": [], "foods": [{"name": "gelatin", "material": "gelatin-20-1", "size_mm": [28, 14, 22]}]}))
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             done = json.loads(output_of([
-                self.build / "app/spoonbill", "study", ROOT / "assets/models/spoon-original.json", "--file", study,
+                self.build / "app/spoonbill", "study", ROOT / "assets/models/spoon-bowl.json", "--file", study,
                 "--out", Path(folder) / "out", "--workers", "1", "--json"]))
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if done["cases"] != 1 or done["not_judged"] != 0:
