@@ -13,7 +13,7 @@ namespace spoonbill {
 // A picture of the end of a case.
 struct StudyPicture {
   StudyCase study_case;
-  std::string verdict;  // in words, or why there is none
+  std::string verdict;  // in words, or the reason why the case was not judged
   std::string png;      // bytes of the file; empty if there is no picture
 };
 

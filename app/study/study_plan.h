@@ -56,7 +56,7 @@ struct StudyPlan {
   bool tries_claim = true;
   bool repeats = true;  // whether changes of verdict are repeated with shorter steps and finer cells
   std::vector<double> frame_tilts_deg;  // of the pictures
-  std::vector<Material> materials;      // of which the spoons are weighed
+  std::vector<Material> materials;      // of which the spoons are weighed and bent
   // Range of the wrist's deviation while feeding: ulnar is negative, radial is positive and lifts the front.
   Range<double> wrist_deg{-20.0, 5.0};
   std::string wrist_source;

@@ -21,10 +21,11 @@ struct JudgedTilt {
 struct SeriesSummary {
   StudySeries series;
   std::vector<JudgedTilt> tilts;  // ascending
-  // The longest range of tilts, all tried, at which the food holds; empty if there is none. It ends halfway
-  // between the last tilt that holds and the next.
+  // The longest range of tilts between which the food holds at each tilt tried; empty if it holds nowhere. It
+  // ends halfway between the last tilt that holds and the next that is decided.
   std::optional<Range<double>> holds_deg;
-  bool is_open_low = false, is_open_high = false;  // whether the range ends where the tilts end
+  // True if no tilt beyond that end of the range is decided. The range then ends at the last tilt that holds.
+  bool is_open_low = false, is_open_high = false;
   // The centre of the range, farthest from both ends; and the half width of the interval around it that the
   // spacing of the tilts and disagreeing repeats leave open.
   double best_deg = 0.0, uncertainty_deg = 0.0;
