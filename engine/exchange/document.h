@@ -19,7 +19,8 @@
 //        "density_kg_per_m3": 1700, "damping_time_s": 2e-5, "plastic": true, "yield_strain": 0.02,
 //        "flow_rate_per_s": 240,
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,     each optional, 0
-//        "relaxing_share": 0.5, "relaxation_time_s": 30},        optional, no creep
+//        "relaxing_share": 0.5, "relaxation_time_s": 30,         optional, no creep
+//        "yield_strength_pa": 4e7, "yield_source": "..."},       optional, not known
 //      "kind": "fixed",               optional, "deformable"; a fixed or "rigid" body has no lattice,
 //                                     regions, loads or supports
 //      "hand": {"stiffness_n_per_m": 300, "turn_stiffness_nm_per_rad": 1},     optional, a rigid body is free

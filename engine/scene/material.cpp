@@ -39,6 +39,10 @@ Status check_material(const Material& material) {
   return {};
 }
 
+double find_yield_stress_pa(const Material& material) {
+  return material.plastic ? material.youngs_modulus_pa * material.yield_strain : material.yield_strength_pa;
+}
+
 bool is_linear_elastic(const Material& material) {
   return !material.plastic && material.relaxing_fraction == 0.0 && material.stiffening == 0.0;
 }

@@ -38,6 +38,10 @@ struct Material {
   double relaxing_fraction = 0.0;
   double relaxation_time_s = 1.0;
   double friction = 0.0;  // Coulomb friction coefficient of the surface
+  // Stress at which a material that is not plastic yields or breaks. Reports compare stresses with it; no
+  // solver uses it. 0: not known.
+  double yield_strength_pa = 0.0;
+  std::string yield_source;  // where that stress comes from
 };
 
 // Range of Young's modulus, from the softest gel to beyond diamond. If all properties of a material are
@@ -62,6 +66,7 @@ inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
 inline constexpr Range<double> relaxing_fraction_range{0.0, 1.0};
 inline constexpr Range<double> relaxation_time_range_s{0.1, 1e6};
 inline constexpr Range<double> friction_range{0.0, 5.0};
+inline constexpr Range<double> yield_strength_range_pa{0.0, 1e11};
 
 inline constexpr Range<double> yield_strain_range_for(bool plastic) {
   return plastic ? yield_strain_range : elastic_yield_strain_range;
@@ -92,11 +97,18 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
     number_field("relaxation_time_s", &Material::relaxation_time_s, relaxation_time_range_s,
                  FieldUnit::second)
         .with_partner("relaxing_share"),
+    number_field("yield_strength_pa", &Material::yield_strength_pa, yield_strength_range_pa,
+                 FieldUnit::pascal, "Stress at which a material that is not plastic yields or breaks")
+        .optional(),
+    text_field("yield_source", &Material::yield_source, "Where the yield strength comes from").optional(),
 });
 
 // Returns true if the material does not flow, creep or stiffen. Such a material can be simulated with
 // hexahedral elements, at any Poisson's ratio.
 bool is_linear_elastic(const Material& material);
+
+// Returns the stress at which a material yields or breaks; 0 if it is not known.
+double find_yield_stress_pa(const Material& material);
 
 // Refuses a material with a value outside its range, and a material that both flows and creeps. Refuses a
 // Poisson's ratio below min_spring_poissons_ratio unless the material is linear elastic. The error names the

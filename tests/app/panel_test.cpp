@@ -26,7 +26,15 @@ PanelModel full_model() {
   model.title = "A spoon handle with a long name";
   model.time_s = 123.45;
   model.can_undo = model.can_redo = true;
-  model.material = {"modelling-clay", "test", 2e5, 0.45, 1700.0, 2e-5, true, 0.01, 300.0};
+  model.material.name = "modelling-clay";
+  model.material.source = "test";
+  model.material.youngs_modulus_pa = 2e5;
+  model.material.poissons_ratio = 0.45;
+  model.material.density_kg_per_m3 = 1700.0;
+  model.material.damping_time_s = 2e-5;
+  model.material.plastic = true;
+  model.material.yield_strain = 0.01;
+  model.material.flow_rate_per_s = 300.0;
   model.presets = {model.material};
   model.inertia_scale = 1225.0;
   model.mass_kg = 1.2345;

@@ -42,8 +42,8 @@ std::vector<double> numbers_of(const Document& document) {
       material.youngs_modulus_pa, material.poissons_ratio,    material.density_kg_per_m3,
       material.damping_time_s,    material.yield_strain,      material.flow_rate_per_s,
       material.hardening,         material.stiffening,        material.relaxing_fraction,
-      material.relaxation_time_s, material.friction,          scene.tool.radius_m,
-      scene.sculpting.drag_per_s, scene.sculpting.force_scale};
+      material.relaxation_time_s, material.friction,          material.yield_strength_pa,
+      scene.tool.radius_m,        scene.sculpting.drag_per_s, scene.sculpting.force_scale};
   append(numbers, scene.sculpting.gravity_m_per_s2);
   for (const FixingPlane& plane : scene.planes) {
     append(numbers, plane.point_m);
@@ -76,7 +76,9 @@ Document sample_document() {
                       -2.5,
                       0.0,
                       1.0,
-                      0.375};
+                      0.375,
+                      1e6,
+                      "for tests"};
   Scene scene{{Body{"stub", std::move(surface), clay, {}}}, {}, {}, {}};
   scene.planes.push_back({Vector3(0.01, 0.0, 0.0), Vector3::UnitX()});
   return {"stub", std::move(scene), Json{{"camera", {{"distance_mm", 250}}}}};
