@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,9 +12,12 @@
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
 #include "app/report/fact_sheet.h"
+#include "app/report/quantity_text.h"
 #include "app/study/case_crew.h"
 #include "app/study/case_file.h"
+#include "app/study/case_trial.h"
 #include "app/study/next_cases.h"
+#include "app/study/sampled_cases.h"
 #include "app/study/slurm.h"
 #include "app/study/study_page.h"
 #include "app/study/study_parts.h"
@@ -34,6 +38,7 @@ struct StudyOptions {
   std::vector<std::filesystem::path> spoons;
   std::filesystem::path file, out;
   int workers = 0;  // 0: one for each processor
+  StudyChoices choices;
   std::optional<StudyPart> part;
   bool on_slurm = false;
   bool merges_only = false;
@@ -76,6 +81,16 @@ Result<StudyPart> parse_part(const std::string& text) {
   return Error{ErrorCode::malformed, "must be NUMBER/COUNT, such as 3/40"};
 }
 
+Result<int> parse_sensitivity_count(const std::string& text) {
+  int count = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, count);
+  if (read.ec == std::errc() && read.ptr == end && sensitivity_count_range.contains(count)) return count;
+  return Error{ErrorCode::out_of_range, "must be a whole number from " +
+                                            std::to_string(sensitivity_count_range.low) + " to " +
+                                            std::to_string(sensitivity_count_range.high)};
+}
+
 // Returns the program with the arguments of this study, as a task on another machine runs it.
 std::vector<std::string> task_command(const StudyOptions& options) {
   std::error_code ignored;
@@ -86,6 +101,12 @@ std::vector<std::string> task_command(const StudyOptions& options) {
   }
   if (!options.file.empty()) {
     command.insert(command.end(), {"--file", std::filesystem::absolute(options.file).string()});
+  }
+  if (options.choices.is_full_grid) {
+    command.insert(command.end(), {"--grid", *options.choices.is_full_grid ? "full" : "one_at_a_time"});
+  }
+  if (options.choices.sensitivity_count) {
+    command.insert(command.end(), {"--sensitivity", std::to_string(*options.choices.sensitivity_count)});
   }
   command.insert(command.end(), {"--out", std::filesystem::absolute(options.out).string(), "--workers", "1"});
   return command;
@@ -140,13 +161,39 @@ Status run_all_cases(const StudyOptions& options, const StudyPlan& plan, CaseFil
   }
 }
 
+// Prints how many cases the sensitivity analysis still needs and about how long they take, from the time of
+// the usual case of the study.
+Status announce_sensitivity(const StudyOptions& options, const StudyPlan& plan, const CaseFile& file,
+                            const InterruptWatch& interrupt, Console& console) {
+  const std::size_t count = plan.sensitivity.count, factors = plan.sensitivity.ranges.size();
+  const SensitivityCases cases = list_sensitivity_cases(plan);
+  if (find_result(cases.mixed.back().back(), file.results())) return {};
+  StudyCase usual = cases.a.front();
+  for (const FactorRange& one : plan.sensitivity.ranges) {
+    factor_of(usual, one.factor) = 0.5 * (one.range.low + one.range.high);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const auto result =
+      run_case(plan, usual, [&](const Trial&, const Simulation&) { return !interrupt.requested(); });
+  if (!result) return result.error();
+  const double case_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::size_t all = count * (factors + 2);
+  const int workers = options.on_slurm ? 1 : count_workers(options);
+  const double minutes = case_s * static_cast<double>(all) / (60.0 * workers);
+  console.err << "spoonbill: the sensitivity analysis has " << count << " x (" << factors << " + 2) = " << all
+              << " cases, about " << decimals_text(minutes, minutes < 10.0 ? 1 : 0) << " min"
+              << (options.on_slurm ? " on one processor" : "") << '\n';
+  return {};
+}
+
 Result<std::vector<StudyPicture>> make_pictures(const StudyOptions& options, const StudyPlan& plan,
                                                 const InterruptWatch& interrupt, Console& console) {
   std::vector<StudyPicture> pictures;
   const std::vector<StudyCase> cases = list_pictured_cases(plan);
   ProgressBar bar(console, "Drawing", options.progress);
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    auto picture = make_study_picture(plan, cases[k], [&] { return interrupt.requested(); });
+    const std::filesystem::path video = options.out / ("video-" + std::to_string(k + 1) + ".mp4");
+    auto picture = make_study_picture(plan, cases[k], video, [&] { return interrupt.requested(); });
     bar.show(k + 1, cases.size());
     if (!picture) return picture.error();
     pictures.push_back(std::move(picture).value());
@@ -246,8 +293,11 @@ Status check_sources(const StudyOptions& options) {
 
 Status study(const StudyOptions& options, Console& console) {
   if (Status checked = check_sources(options); !checked) return checked;
-  const auto plan = make_study_plan(options.spoons, options.file);
+  const auto plan = make_study_plan(options.spoons, options.file, options.choices);
   if (!plan) return plan.error();
+  for (const std::string& line : find_large_foods(plan.value())) {
+    console.err << "spoonbill: " << one_line(line) << '\n';
+  }
   if (Status made = make_folder(options.out); !made) return made;
   if (options.part) return run_own_part(options, plan.value(), console);
   InterruptWatch interrupt;
@@ -262,6 +312,11 @@ Status study(const StudyOptions& options, Console& console) {
     const auto is_complete = merge_and_count(options, plan.value(), file.value(), console);
     if (!is_complete) return is_complete.error();
     if (!is_complete.value()) return {};
+  }
+  if (plan->sensitivity.count > 0) {
+    if (Status said = announce_sensitivity(options, plan.value(), file.value(), interrupt, console); !said) {
+      return stopped(said.error());
+    }
   }
   const auto run_all = options.on_slurm ? run_all_on_slurm : run_all_cases;
   if (Status ran = run_all(options, plan.value(), file.value(), interrupt, console); !ran) {
@@ -283,12 +338,24 @@ CommandEntry add_study(OptionSet root) {
       "gelatin that yields, then halves the steps between different verdicts until they are one degree, and\n"
       "repeats the cases there with half the step and finer cells. Varies the food and the bowl of the\n"
       "first spoon, one thing at a time. A study file can change all of this.\n"
-      "Writes study.html, a report that needs no other file; study.json; cases.csv; and pictures. A study\n"
-      "that was stopped goes on when the same command runs again.\n"
+      "Writes study.html, a report that needs no other file; study.json; cases.csv; pictures; and videos\n"
+      "if ffmpeg is installed. A study that was stopped goes on when the same command runs again.\n"
       "A spoon is a document with one body that opens upwards; its bowl is found by itself.\n"
       "Example: spoonbill study assets/models/spoon-original.json --out output/study");
   parser.add_option("SPOON", options->spoons, "Documents of spoons (.json)").require();
   parser.add_option("--file", options->file, "Study file (.json): foods, tilts, frictions, variations");
+  add_parsed_option(
+      parser, "--grid", "WHICH",
+      [](const std::string& text) -> Result<bool> {
+        if (text == "full" || text == "one_at_a_time") return text == "full";
+        return Error{ErrorCode::unknown, "must be full or one_at_a_time"};
+      },
+      [options](bool is_full) { options->choices.is_full_grid = is_full; },
+      "Vary one thing at a time (one_at_a_time), or try all combinations (full) on every spoon");
+  add_parsed_option(
+      parser, "--sensitivity", "N", parse_sensitivity_count,
+      [options](int count) { options->choices.sensitivity_count = count; },
+      "Also find what the margin depends on, by Sobol indices of N times (factors + 2) cases");
   parser.add_option("--out", options->out, "Folder of the report").show_as("DIR").require();
   parser
       .add_option("--workers", options->workers,

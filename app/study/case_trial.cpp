@@ -96,6 +96,17 @@ Body make_food(const StudyFood& food, const StudyCase& study_case) {
   return body;
 }
 
+// Turns food about the vertical, so that its x axis lies along the bowl, to a degree: the front of a bowl is
+// not known better. Food has no front of its own.
+void turn_along(const Vector3& front, Body& food) {
+  Vector3 along(front.x(), 0.0, front.z());
+  if (along.x() < 0.0) along = -along;
+  const double angle_deg = std::atan2(-along.z(), along.x()) * 180.0 / std::numbers::pi;
+  if (std::abs(angle_deg) > 1.0) {
+    move_body(turn_about(bounding_box(food.surface.net).centre(), up, angle_deg), food);
+  }
+}
+
 // Returns the side of the rim of a point at an offset from the rim's centre (Spill::outside_m). The sides of
 // a long bowl begin at its diagonals.
 RimSide find_side(const Vector2& offset_m, const Bowl& bowl) {
@@ -144,6 +155,7 @@ Result<Scene> make_case_scene(const StudyPlan& plan, const StudyCase& study_case
   Body& food = scene.bodies[food_index];
   const Body& spoon = scene.bodies[spoon_index];
   const Box spoon_box = bounding_box(spoon.surface.net);
+  turn_along(bowl.front, food);
   Vector3 place_m = bowl.centre_m - bounding_box(food.surface.net).centre();
   place_m.y() = spoon_box.high.y() - bounding_box(food.surface.net).low.y();
   move_body({place_m, Quaternion::Identity()}, food);

@@ -4,37 +4,42 @@
 #include <cmath>
 #include <set>
 
+#include "app/study/sampled_cases.h"
+
 namespace spoonbill {
 namespace {
 
 constexpr double claim_bowl_depth = 0.5, claim_pitch_deg = -10.0, claim_friction = 0.02;
 
 StudyCase varied_case(StudyCase base, StudyFactor factor, double value) {
-  switch (factor) {
-    case StudyFactor::helping:
-      base.helping = value;
-      break;
-    case StudyFactor::stiffness:
-      base.stiffness = value;
-      break;
-    case StudyFactor::depth:
-      base.bowl.depth = value;
-      break;
-    case StudyFactor::width:
-      base.bowl.width = value;
-      break;
-    case StudyFactor::curvature:
-      base.bowl.curvature = value;
-      break;
-    case StudyFactor::pitch:
-      base.pitch_deg = value;
-      break;
-  }
+  factor_of(base, factor) = value;
   return base;
 }
 
-bool is_judged(const CaseResult& result) {
-  return result.failure.empty();
+// Adds a series for each value of each variation, with all else as usual.
+void add_single_variations(const StudyPlan& plan, const StudyCase& base, std::vector<StudySeries>& all) {
+  for (const StudyVariation& variation : plan.variations) {
+    for (const double value : variation.values) {
+      const StudyCase varied = varied_case(base, variation.factor, value);
+      if (varied != base) all.push_back({varied, variation.factor, false});
+    }
+  }
+}
+
+// Adds a series for each combination of the values of all variations, each of them also as usual, but for the
+// one with everything as usual.
+void add_combinations(const StudyPlan& plan, const StudyCase& base, std::vector<StudySeries>& all) {
+  std::vector<StudySeries> combined{{base, {}, false}};
+  for (const StudyVariation& variation : plan.variations) {
+    const std::size_t before = combined.size();
+    for (const double value : variation.values) {
+      for (std::size_t k = 0; k < before; ++k) {
+        const StudyCase varied = varied_case(combined[k].base, variation.factor, value);
+        if (varied != combined[k].base) combined.push_back({varied, variation.factor, false});
+      }
+    }
+  }
+  all.insert(all.end(), combined.begin() + 1, combined.end());
 }
 
 // Returns whether the verdicts differ, or only one of the cases was judged.
@@ -65,6 +70,7 @@ std::vector<StudySeries> list_series(const StudyPlan& plan) {
         base.food = food.name;
         base.friction = friction;
         all.push_back({base, {}, false});
+        if (plan.is_full_grid) add_combinations(plan, base, all);
       }
     }
   }
@@ -73,12 +79,9 @@ std::vector<StudySeries> list_series(const StudyPlan& plan) {
   base.friction = plan.usual_friction;
   const bool has_usual =
       std::find(plan.frictions.begin(), plan.frictions.end(), plan.usual_friction) != plan.frictions.end();
-  if (!plan.variations.empty() && !has_usual) all.push_back({base, {}, false});
-  for (const StudyVariation& variation : plan.variations) {
-    for (const double value : variation.values) {
-      if (varied_case(base, variation.factor, value) == base) continue;
-      all.push_back({varied_case(base, variation.factor, value), variation.factor, false});
-    }
+  if (!plan.is_full_grid) {
+    if (!plan.variations.empty() && !has_usual) all.push_back({base, {}, false});
+    add_single_variations(plan, base, all);
   }
   if (plan.tries_claim) {
     // Straight, the bowl of the paper's pictures dips at its front. It has to be shallow and slippery for
@@ -142,6 +145,7 @@ std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults&
     const std::string key = case_key(study_case);
     if (!results.contains(key) && keys.insert(key).second) next.push_back(study_case);
   };
+  for (const StudyCase& sampled : list_sampled_cases(plan)) need(sampled);
   for (const StudySeries& series : list_series(plan)) {
     const std::size_t before = next.size();
     for (const double tilt : plan.tilts_deg) need(case_at(series, tilt));

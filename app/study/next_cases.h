@@ -17,10 +17,11 @@ struct DoneCase {
 };
 using CaseResults = std::map<std::string, DoneCase>;  // by case_key()
 
-// A sweep of tilts for one spoon, food and friction, with all else as usual or with one factor varied.
+// A sweep of tilts for one spoon, food and friction, with all else as usual or with one factor varied; with
+// several in a full grid.
 struct StudySeries {
-  StudyCase base;  // the case of each tilt but for its tilt and its lattice and steps
-  std::optional<StudyFactor> varied = {};
+  StudyCase base;                          // the case of each tilt but for its tilt and its lattice and steps
+  std::optional<StudyFactor> varied = {};  // the last of them
   bool is_for_claim = false;  // whether it tries the claim of Pungotra et al. 2013 (read_claim())
 };
 
@@ -45,7 +46,8 @@ std::vector<VerdictChange> find_changes(const StudySeries& series, const CaseRes
 // Returns the result of a case; null if it is not known.
 const CaseResult* find_result(const StudyCase& study_case, const CaseResults& results);
 
-// Returns the cases that can be run now, each once, in a fixed order: first the plan's tilts; then, between
+// Returns the cases that can be run now, each once, in a fixed order: first the cases of
+// a sampled design and of a sensitivity analysis, and the plan's tilts of each series; then, between
 // neighbouring tilts with different verdicts, tilts halfway, until they are finest_tilt_deg apart; then the
 // repeats of the cases on both sides of each change. Empty if the study is complete.
 std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults& results);

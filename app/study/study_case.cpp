@@ -10,6 +10,28 @@ constexpr Range<double> any_number{-1e9, 1e9};
 
 }  // namespace
 
+double& factor_of(StudyCase& study_case, StudyFactor factor) {
+  switch (factor) {
+    case StudyFactor::helping:
+      return study_case.helping;
+    case StudyFactor::stiffness:
+      return study_case.stiffness;
+    case StudyFactor::depth:
+      return study_case.bowl.depth;
+    case StudyFactor::width:
+      return study_case.bowl.width;
+    case StudyFactor::curvature:
+      return study_case.bowl.curvature;
+    case StudyFactor::pitch:
+      return study_case.pitch_deg;
+    case StudyFactor::friction:
+      return study_case.friction;
+    case StudyFactor::tilt:
+      break;
+  }
+  return study_case.tilt_deg;
+}
+
 std::string variation_text(const StudyCase& study_case) {
   const StudyCase usual;
   std::string text;

@@ -27,6 +27,14 @@ struct StudyCase {
   friend bool operator==(const StudyCase&, const StudyCase&) = default;
 };
 
+// A value of a case that a study varies, by its name in files.
+enum class StudyFactor { helping, stiffness, depth, width, curvature, pitch, friction, tilt };
+inline constexpr const char* study_factor_names[] = {"helping",    "stiffness",      "bowl_depth",
+                                                     "bowl_width", "bowl_curvature", "pitch_deg",
+                                                     "friction",   "tilt_deg"};
+// Returns the value of a factor, to read or to set.
+double& factor_of(StudyCase& study_case, StudyFactor factor);
+
 // Returns one line that differs between different cases. It is the name of a case in files.
 std::string case_key(const StudyCase& study_case);
 // Returns how a case differs from a usual one in helping, stiffness, bowl, pitch and laying in, such as
@@ -51,6 +59,10 @@ struct CaseResult {
   double largest_speed_m_per_s = 0.0;   // at the end
   int nodes = 0;                        // of the food's lattice
 };
+
+inline bool is_judged(const CaseResult& result) {
+  return result.failure.empty();
+}
 
 Json case_to_json(const StudyCase& study_case);
 Json result_to_json(const CaseResult& result);

@@ -9,7 +9,9 @@
 #include "app/assets_folder.h"
 #include "app/report/quantity_text.h"
 #include "app/study/case_trial.h"
+#include "app/study/page_parts.h"
 #include "app/study/spoon_measures.h"
+#include "app/study/study_design_parts.h"
 #include "app/study/study_tables.h"
 #include "engine/base/assert.h"
 #include "engine/base/file.h"
@@ -20,132 +22,6 @@ namespace {
 
 constexpr std::size_t page_part_limit_bytes = std::size_t{1} << 20;
 
-std::string html(std::string_view text) {
-  std::string safe;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += letter;
-    }
-  }
-  return safe;
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[at + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
-    }
-  }
-  return text;
-}
-
-const char* name_of(Verdict verdict) {
-  return verdict_names[static_cast<std::size_t>(verdict)];
-}
-
-std::string degrees(double angle_deg) {
-  return number_text(std::round(10.0 * angle_deg) / 10.0 + 0.0) + "°";
-}
-
-std::string range_text(const Range<double>& range_deg) {
-  return degrees(range_deg.low) + " to " + degrees(range_deg.high);
-}
-
-// An HTML table that grows row by row. A heading is aligned as the cells of the first row are.
-class Table {
- public:
-  Table(std::string_view id, std::vector<std::string> headings) : id_(id), headings_(std::move(headings)) {}
-
-  Table& row() {
-    SPOONBILL_ASSERT(rows_.empty() || column_ == headings_.size());
-    rows_ += rows_.empty() ? "<tr>" : "</tr><tr>";
-    column_ = 0;
-    return *this;
-  }
-  Table& text(std::string_view value) { return cell("<td>", html(value), false); }
-  Table& long_text(std::string_view value) { return cell("<td class=long>", html(value), false); }
-  // Shows `shown`, and sorts by `value`.
-  Table& number(double value, const std::string& shown) {
-    return cell("<td class=number data-value=\"" + number_text(value) + "\">", html(shown), true);
-  }
-  Table& number(double value, int decimals) { return number(value, decimals_text(value, decimals)); }
-  Table& verdict(Verdict verdict) {
-    return cell("<td>",
-                std::string("<span class=\"badge ") + name_of(verdict) + "\">" + name_of(verdict) + "</span>",
-                false);
-  }
-
-  std::string finish() {
-    SPOONBILL_ASSERT(rows_.empty() || column_ == headings_.size());
-    std::string text = "<div class=scroll><table class=sortable id=" + id_ + "><thead><tr>";
-    for (std::size_t k = 0; k < headings_.size(); ++k) {
-      text += (numeric_columns_.contains(k) ? "<th class=number>" : "<th>") + html(headings_[k]) + "</th>";
-    }
-    return text + "</tr></thead><tbody>" + rows_ + (rows_.empty() ? "" : "</tr>") +
-           "</tbody></table></div>\n";
-  }
-
- private:
-  Table& cell(const std::string& open, const std::string& content, bool is_number) {
-    rows_ += open + content + "</td>";
-    if (is_number) numeric_columns_.insert(column_);
-    ++column_;
-    return *this;
-  }
-
-  std::string id_;
-  std::vector<std::string> headings_;
-  std::string rows_;
-  std::set<std::size_t> numeric_columns_;
-  std::size_t column_ = 0;
-};
-
-std::string section(const char* id, const char* heading) {
-  return std::string("<section id=") + id + "><h2>" + heading + "</h2>\n";
-}
-
-std::string series_label(const StudySeries& series) {
-  return series.base.food + ", friction " + number_text(series.base.friction) +
-         (variation_text(series.base).empty() ? "" : ", " + variation_text(series.base));
-}
-
-void add_holding(const SeriesSummary& summary, const StudyPlan& plan, Table& table) {
-  if (!summary.holds_deg) {
-    table.text("at no tilt tried").text("").text("");
-    return;
-  }
-  const Range<double>& holds = *summary.holds_deg;
-  const std::string range = degrees(holds.low) + (summary.is_open_low ? " or less" : "") + " to " +
-                            degrees(holds.high) + (summary.is_open_high ? " or more" : "");
-  table.number(holds.high - holds.low, range);
-  const bool is_open = summary.is_open_low || summary.is_open_high;
-  table.number(summary.best_deg, is_open
-                                     ? "centre of what was tried, " + degrees(summary.best_deg)
-                                     : degrees(summary.best_deg) + " ± " + degrees(summary.uncertainty_deg));
-  const WristReading wrist = read_as_wrist(holds, plan);
-  table.text(wrist.is_within ? range_text(wrist.common_deg) : "outside the range");
-}
-
 std::string answer_part(const StudyPlan& plan, const StudySummary& summary) {
   std::string text = section("answer", "At which tilts the food holds");
   text +=
@@ -154,7 +30,7 @@ std::string answer_part(const StudyPlan& plan, const StudySummary& summary) {
       "wrist's " +
       range_text(plan.wrist_deg) + " (" + html(plan.wrist_source) +
       "; ulnar is negative), if the spoon tilts as the wrist deviates.</p>\n";
-  Table table("best", {"spoon", "food", "friction", "holds", "best tilt", "within the wrist's range"});
+  PageTable table("best", {"spoon", "food", "friction", "holds", "best tilt", "within the wrist's range"});
   for (const SeriesSummary& series : summary.series) {
     if (series.series.varied || series.series.is_for_claim || series.tilts.empty()) continue;
     const StudyCase& base = series.series.base;
@@ -168,13 +44,18 @@ std::string strip_label(const SeriesSummary& series) {
   return series.series.base.spoon + ", " + series_label(series.series);
 }
 
-// A strip for each series: the verdict at each tilt, up to halfway to the next.
-std::string strips_part(const StudySummary& summary) {
+// Returns whether a series is drawn. A full grid has too many for pictures; its table has all.
+bool is_drawn(const StudyPlan& plan, const SeriesSummary& series) {
+  return !series.tilts.empty() && !(plan.is_full_grid && series.series.varied);
+}
+
+// A strip for each series that is drawn: the verdict at each tilt, up to halfway to the next.
+std::string strips_part(const StudyPlan& plan, const StudySummary& summary) {
   constexpr double row_px = 22.0, width_px = 620.0, top_px = 26.0, letter_px = 6.2;
   double low = infinity, high = -infinity;
   std::size_t rows = 0, longest = 0;
   for (const SeriesSummary& series : summary.series) {
-    if (series.tilts.empty()) continue;
+    if (!is_drawn(plan, series)) continue;
     ++rows;
     longest = std::max(longest, strip_label(series).size());
     low = std::min(low, series.tilts.front().tilt_deg);
@@ -200,7 +81,7 @@ std::string strips_part(const StudySummary& summary) {
   }
   double y = top_px;
   for (const SeriesSummary& series : summary.series) {
-    if (series.tilts.empty()) continue;
+    if (!is_drawn(plan, series)) continue;
     text += "<text x=" + px(left_px - 8.0) + " y=" + px(y + 14.0) + " class=at-end>" +
             html(strip_label(series)) + "</text>";
     for (std::size_t k = 0; k < series.tilts.size(); ++k) {
@@ -236,6 +117,7 @@ std::string strips_part(const StudySummary& summary) {
 std::string plot_part(const StudyPlan& plan, const StudySummary& summary) {
   Json data = Json::array();
   for (const SeriesSummary& series : summary.series) {
+    if (!is_drawn(plan, series)) continue;
     Json points = Json::array();
     for (const JudgedTilt& tilt : series.tilts) {
       const CaseResult& result = *tilt.result;
@@ -250,9 +132,6 @@ std::string plot_part(const StudyPlan& plan, const StudySummary& summary) {
     data.push_back(
         {{"spoon", series.series.base.spoon}, {"label", series_label(series.series)}, {"points", points}});
   }
-  std::string json = data.dump();
-  // A "<" in a name could end the script element.
-  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
   std::string text = section("quantities", "What happens at each tilt");
   text +=
       "<div class=controls><label>Quantity <select id=quantity><option value=margin>margin of the centre "
@@ -265,7 +144,7 @@ std::string plot_part(const StudyPlan& plan, const StudySummary& summary) {
   text +=
       "</select></label></div><div class=scroll><svg id=plot viewBox=\"0 0 900 340\" role=img "
       "aria-label=\"A quantity against the tilt\"></svg></div>\n";
-  return text + "<script type=\"application/json\" id=study-data>" + json + "</script></section>\n";
+  return text + data_element("study-data", data) + "</section>\n";
 }
 
 std::string pictures_part(const std::vector<StudyPicture>& pictures) {
@@ -279,6 +158,12 @@ std::string pictures_part(const std::vector<StudyPicture>& pictures) {
       text += "<figure><figcaption>" + html(what) + "</figcaption></figure>";
       continue;
     }
+    if (!picture.video.empty()) {
+      text += "<figure><video controls loop muted playsinline aria-label=\"" + html(what) +
+              "\" poster=\"data:image/png;base64," + base64(picture.png) + "\" src=\"data:video/mp4;base64," +
+              base64(picture.video) + "\"></video><figcaption>" + html(what) + "</figcaption></figure>";
+      continue;
+    }
     text += "<figure><img alt=\"" + html(what) + "\" src=\"data:image/png;base64," + base64(picture.png) +
             "\"><figcaption>" + html(what) + "</figcaption></figure>";
   }
@@ -289,10 +174,12 @@ std::string bending_table(const StudyPlan& plan, const Bendings& bendings) {
   if (bendings.empty()) return {};
   std::string text =
       "<p>Held level in the rear third of the handle, the front of the rim drops, under the weight of "
-      "the spoon and with the food. The stress is the largest strain times Young's modulus. Parts "
-      "thinner than a cell of the lattice are too stiff in bending.</p>\n";
-  Table table("bending", {"spoon", "material", "held, mm", "drop by its weight, mm", "with the food, mm",
-                          "largest strain, %", "stress, MPa"});
+      "the spoon and with the food. The stress is the largest strain times Young's modulus, with the food; "
+      "beside it is the stress at which the material yields or breaks. Parts thinner than a cell of the "
+      "lattice are too stiff in bending.</p>\n";
+  PageTable table("bending",
+                  {"spoon", "material", "held, mm", "drop by its weight, mm", "with the food, mm",
+                   "largest strain, %", "stress, MPa", "yields at, MPa", "stress of the yield stress, %"});
   for (const StudySpoon& spoon : plan.spoons) {
     for (const Material& material : plan.materials) {
       const SpoonBending* const bending = find_bending(bendings, spoon.name, material.name);
@@ -301,9 +188,21 @@ std::string bending_table(const StudyPlan& plan, const Bendings& bendings) {
       table.row().text(spoon.name).text(material.name).number(1e3 * bending->hand_m, 0);
       table.number(1e3 * bending->own_weight.drop_m, 4).number(1e3 * bending->with_food.drop_m, 4);
       table.number(100.0 * strain, 4).number(1e-6 * strain * material.youngs_modulus_pa, 3);
+      const double stress_pa = strain * material.youngs_modulus_pa;
+      const double yield_pa = find_yield_stress_pa(material);
+      if (yield_pa > 0.0) {
+        table.number(1e-6 * yield_pa, 1).number(100.0 * stress_pa / yield_pa, 2);
+      } else {
+        table.text("not known").text("");
+      }
     }
   }
-  return text + table.finish();
+  text += table.finish() + "<ul>";
+  for (const Material& material : plan.materials) {
+    text += "<li>" + html(material.name) + ": " + html(material.source) +
+            (material.yield_source.empty() ? "" : " Yield: " + html(material.yield_source)) + "</li>";
+  }
+  return text + "</ul>\n";
 }
 
 Result<std::string> hand_part(const StudyPlan& plan, const Bendings& bendings) {
@@ -320,9 +219,9 @@ Result<std::string> hand_part(const StudyPlan& plan, const Bendings& bendings) {
       "measured force. Its shares are of grip forces in early rheumatoid arthritis (TIRA 2005): the "
       "upper bound of the weakest group, 114 N, and the lower bounds of the others, 116, 214 and 328 "
       "N.</p>\n";
-  Table table("measures",
-              {"spoon", "material", "weight, g", "balance from the end, mm", "of length, mm", "hand at, mm",
-               "width, mm", "torque, N mm", "force, N", "of 114 / 116 / 214 / 328 N"});
+  PageTable table("measures",
+                  {"spoon", "material", "weight, g", "balance from the end, mm", "of length, mm",
+                   "hand at, mm", "width, mm", "torque, N mm", "force, N", "of 114 / 116 / 214 / 328 N"});
   for (const StudySpoon& spoon : plan.spoons) {
     for (const Material& material : plan.materials) {
       auto measures = measure_spoon(spoon, material, food_kg);
@@ -354,7 +253,7 @@ std::string ratings_part(const StudyPlan& plan) {
   if (plan.ratings.empty()) return {};
   std::string text = section("ratings", "What people think of them");
   text += "<p>Ratings from 1 (bad) to 7 (good), as given in the study file.</p>\n";
-  Table table("rated", {"spoon", "rating", "by", "note"});
+  PageTable table("rated", {"spoon", "rating", "by", "note"});
   for (const SpoonRating& rating : plan.ratings) {
     table.row().text(rating.spoon).number(rating.rating, 0).text(rating.by).long_text(rating.note);
   }
@@ -362,13 +261,13 @@ std::string ratings_part(const StudyPlan& plan) {
 }
 
 std::string factors_part(const StudyPlan& plan, const StudySummary& summary) {
-  if (plan.variations.empty()) return {};
+  if (plan.variations.empty() || plan.is_full_grid) return {};
   std::string text = section("factors", "One thing at a time");
   text += "<p>" + html(plan.spoons.front().name) + " with " + html(plan.foods.front().name) +
           " at a friction of " + number_text(plan.usual_friction) +
           ". Numbers are factors on the usual size or stiffness, but for the pitch. The first row is as "
           "usual.</p>\n";
-  Table table("varied", {"varied", "holds", "best tilt", "within the wrist's range"});
+  PageTable table("varied", {"varied", "holds", "best tilt", "within the wrist's range"});
   for (const SeriesSummary& series : summary.series) {
     const StudyCase& base = series.series.base;
     const bool is_usual = !series.series.varied && !series.series.is_for_claim &&
@@ -401,7 +300,7 @@ std::string trust_part(const StudyPlan& plan, const CaseResults& results, const 
         "be trusted, the grams are not.</p>\n";
   }
   if (!trust.disagreements.empty()) {
-    Table table("disagreements", {"repeat", "usual", "repeated"});
+    PageTable table("disagreements", {"repeat", "usual", "repeated"});
     for (const Disagreement& one : trust.disagreements) {
       table.row().text(case_key(one.repeat)).verdict(one.usual).verdict(one.repeated);
     }
@@ -418,7 +317,7 @@ std::string trust_part(const StudyPlan& plan, const CaseResults& results, const 
   }
   if (!summary.failures.empty()) {
     text += "<p>Not judged:</p>\n";
-    Table table("failures", {"case", "why"});
+    PageTable table("failures", {"case", "why"});
     for (const DoneCase* const failure : summary.failures) {
       table.row().text(case_key(failure->study_case)).long_text(failure->result.failure);
     }
@@ -434,7 +333,7 @@ std::string claim_part(const StudySummary& summary) {
       "with the front lifted by 10°, and spills over the back at 20°. They state no data of the gelatin, "
       "the helping or the bowl. Food that yields under 0.3 of the pressure of its own height is a "
       "liquid, which a trial does not judge.</p>\n";
-  Table table("claims", {"spoon", "setting", "0°", "10°", "20°", "reading"});
+  PageTable table("claims", {"spoon", "setting", "0°", "10°", "20°", "reading"});
   int tried = 0, reproduced = 0;
   for (const SeriesSummary& series : summary.series) {
     const ClaimReading reading = read_claim(series);
@@ -463,9 +362,9 @@ std::string cases_part(const CaseResults& results) {
   text +=
       "<p class=note>Click a heading to sort. The margin is the distance of the centre of mass from the "
       "rim. The first spill is in seconds after the turn began; a negative time is before it.</p>\n";
-  Table table("all",
-              {"spoon", "food", "friction", "varied", "tilt", "repeat", "verdict", "outside, g", "left, g",
-               "over the", "margin, mm", "first spill, s", "largest force, N", "motion, s", "nodes"});
+  PageTable table(
+      "all", {"spoon", "food", "friction", "varied", "tilt", "repeat", "verdict", "outside, g", "left, g",
+              "over the", "margin, mm", "first spill, s", "largest force, N", "motion, s", "nodes"});
   for (const auto& [key, done] : results) {
     const StudyCase& one = done.study_case;
     const CaseResult& result = done.result;
@@ -546,10 +445,10 @@ Result<std::string> make_study_page(const StudyPlan& plan, const CaseResults& re
       html("Does the food stay on " + names + "?") + "</title>\n<style>\n" + style.value() +
       "</style></head><body>\n<h1>Does the food stay on the spoon?</h1>\n<p>" + html(names) + ". " +
       std::to_string(results.size()) + " cases.</p>\n";
-  page +=
-      answer_part(plan, summary) + strips_part(summary) + plot_part(plan, summary) + pictures_part(pictures);
-  page +=
-      hand.value() + ratings_part(plan) + factors_part(plan, summary) + trust_part(plan, results, summary);
+  page += answer_part(plan, summary) + strips_part(plan, summary) + plot_part(plan, summary) +
+          pictures_part(pictures);
+  page += hand.value() + ratings_part(plan) + factors_part(plan, summary) + grid_part(plan, summary) +
+          sample_part(plan, results) + sensitivity_part(plan, summary) + trust_part(plan, results, summary);
   page += claim_part(summary) + cases_part(results) + method_part(plan);
   return page + "<script>\n" + script.value() + "</script>\n</body></html>\n";
 }

@@ -10,11 +10,12 @@
 
 namespace spoonbill {
 
-// A picture of the end of a case.
+// A picture of the end of a case, and a video of all of it.
 struct StudyPicture {
   StudyCase study_case;
   std::string verdict;  // in words, or the reason why the case was not judged
   std::string png;      // bytes of the file; empty if there is no picture
+  std::string video;    // bytes of an MP4 file of the case; empty if there is none
 };
 
 // Returns the page. Its style and its script come with the program; the error names a file that is missing.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -20,7 +21,7 @@ namespace {
 
 constexpr int study_version = 1;
 // Number of the way in which cases are run; grows when the same case would have another result.
-constexpr int study_method = 1;
+constexpr int study_method = 2;
 constexpr std::size_t study_file_limit_bytes = std::size_t{1} << 20;
 constexpr std::array<double, 3> usual_size_mm{28.0, 14.0, 22.0};
 constexpr Range<double> food_size_range_m{1e-3, 0.2};
@@ -186,8 +187,18 @@ StudyPlan usual_plan() {
 }
 
 Range<double> factor_range(StudyFactor factor) {
-  if (factor == StudyFactor::pitch) return {-45.0, 45.0};
-  return factor == StudyFactor::stiffness ? Range<double>{0.01, 100.0} : bowl_factor_range;
+  switch (factor) {
+    case StudyFactor::pitch:
+      return {-45.0, 45.0};
+    case StudyFactor::stiffness:
+      return {0.01, 100.0};
+    case StudyFactor::friction:
+      return study_friction_range;
+    case StudyFactor::tilt:
+      return study_tilt_range_deg;
+    default:
+      return bowl_factor_range;
+  }
 }
 
 // Returns the first name that two of a list have.
@@ -204,11 +215,76 @@ void read_variations(FieldReader reader, StudyPlan& plan) {
   plan.variations.clear();
   for (std::size_t k = 0; k < std::size(study_factor_names); ++k) {
     const char* const name = study_factor_names[k];
-    if (!reader.has(name)) continue;
     const auto factor = static_cast<StudyFactor>(k);
+    // Frictions and tilts have lists of their own.
+    if (factor == StudyFactor::friction || factor == StudyFactor::tilt || !reader.has(name)) continue;
     plan.variations.push_back({factor, read_numbers(reader, name, factor_range(factor), {0, 50})});
   }
   reader.finish();
+}
+
+std::vector<FactorRange> read_ranges(FieldReader reader) {
+  std::vector<FactorRange> ranges;
+  for (std::size_t k = 0; k < std::size(study_factor_names); ++k) {
+    const char* const name = study_factor_names[k];
+    if (!reader.has(name)) continue;
+    const auto factor = static_cast<StudyFactor>(k);
+    const std::vector<double> ends = read_numbers(reader, name, factor_range(factor), {2, 2});
+    if (ends.size() == 2) ranges.push_back({factor, {ends[0], ends[1]}});
+  }
+  reader.finish();
+  return ranges;
+}
+
+void read_sample(FieldReader reader, StudySample& sample) {
+  sample.method = static_cast<SampleMethod>(reader.choose("method", sample_method_names));
+  sample.count = reader.integer("count", sample_count_range);
+  if (sample.method == SampleMethod::latin_hypercube && reader.has("seed")) {
+    sample.seed = static_cast<std::uint32_t>(
+        reader.unsigned_integer("seed", std::numeric_limits<std::uint32_t>::max()));
+  }
+  sample.ranges = read_ranges(reader.inner("ranges"));
+  if (sample.ranges.empty()) reader.refuse("ranges", "must have a range of at least one factor");
+  reader.finish();
+}
+
+void read_sensitivity(FieldReader reader, SensitivityPlan& sensitivity) {
+  sensitivity.count = reader.integer("count", sensitivity_count_range);
+  if (reader.has("ranges")) {
+    sensitivity.ranges = read_ranges(reader.inner("ranges"));
+    if (sensitivity.ranges.empty()) reader.refuse("ranges", "must have a range of at least one factor");
+  }
+  reader.finish();
+}
+
+// Returns the ranges that the lists of tilts, frictions and variations of a plan span, of more than one
+// value.
+std::vector<FactorRange> find_spanned_ranges(const StudyPlan& plan) {
+  std::vector<FactorRange> ranges;
+  const auto add = [&](StudyFactor factor, const std::vector<double>& values, std::optional<double> usual) {
+    Range<double> range{infinity, -infinity};
+    const auto include = [&](double value) {
+      range = {std::min(range.low, value), std::max(range.high, value)};
+    };
+    for (const double value : values) include(value);
+    if (usual) include(*usual);
+    if (range.low < range.high) ranges.push_back({factor, range});
+  };
+  StudyCase usual;
+  for (const StudyVariation& variation : plan.variations) {
+    add(variation.factor, variation.values, factor_of(usual, variation.factor));
+  }
+  add(StudyFactor::friction, plan.frictions, std::nullopt);
+  add(StudyFactor::tilt, plan.tilts_deg, std::nullopt);
+  return ranges;
+}
+
+Json ranges_to_json(const std::vector<FactorRange>& ranges) {
+  Json json = Json::object();
+  for (const FactorRange& one : ranges) {
+    json[study_factor_names[static_cast<std::size_t>(one.factor)]] = {one.range.low, one.range.high};
+  }
+  return json;
 }
 
 Status read_study(const std::filesystem::path& file, StudyPlan& plan) {
@@ -229,6 +305,11 @@ Status read_study(const std::filesystem::path& file, StudyPlan& plan) {
     plan.usual_friction = reader.number("usual_friction", study_friction_range);
   }
   if (reader.has("vary")) read_variations(reader.inner("vary"), plan);
+  if (reader.has("grid")) {
+    plan.is_full_grid = reader.choice<bool>("grid", {{"one_at_a_time", false}, {"full", true}});
+  }
+  if (reader.has("sample")) read_sample(reader.inner("sample"), plan.sample);
+  if (reader.has("sensitivity")) read_sensitivity(reader.inner("sensitivity"), plan.sensitivity);
   if (reader.has("claim")) plan.tries_claim = reader.boolean("claim");
   if (reader.has("repeats")) plan.repeats = reader.boolean("repeats");
   if (reader.has("frames_deg")) {
@@ -300,10 +381,22 @@ std::uint64_t hash_shape(const Body& body) {
 }  // namespace
 
 Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoons,
-                                  const std::filesystem::path& file) {
+                                  const std::filesystem::path& file, const StudyChoices& choices) {
   StudyPlan plan = usual_plan();
   if (!file.empty()) {
     if (Status read = read_study(file, plan); !read) return read.error();
+  }
+  if (choices.is_full_grid) plan.is_full_grid = *choices.is_full_grid;
+  if (choices.sensitivity_count) plan.sensitivity.count = *choices.sensitivity_count;
+  if (plan.sensitivity.count > 0 && plan.sensitivity.ranges.empty()) {
+    plan.sensitivity.ranges = find_spanned_ranges(plan);
+    if (plan.sensitivity.ranges.empty()) {
+      return Error{ErrorCode::inconsistent,
+                   file.string() +
+                       ": no factor of this study has more than one value for a sensitivity "
+                       "analysis; give it \"ranges\"",
+                   "sensitivity"};
+    }
   }
   if (plan.foods.empty()) {
     if (Status added = add_usual_foods(plan); !added) return added.error();
@@ -335,6 +428,21 @@ Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoo
   return plan;
 }
 
+std::vector<std::string> find_large_foods(const StudyPlan& plan) {
+  std::vector<std::string> lines;
+  for (const StudySpoon& spoon : plan.spoons) {
+    for (const StudyFood& food : plan.foods) {
+      const Vector3 size_m = bounding_box(food.body.surface.net).extent();
+      if (size_m.x() <= spoon.bowl.length_m && size_m.z() <= spoon.bowl.width_m) continue;
+      lines.push_back("\"" + food.name + "\" of " + short_length_text(size_m.x()) + " by " +
+                      short_length_text(size_m.z()) + " is larger than the bowl of \"" + spoon.name + "\", " +
+                      short_length_text(spoon.bowl.length_m) + " by " +
+                      short_length_text(spoon.bowl.width_m) + ", and lies on its rim");
+    }
+  }
+  return lines;
+}
+
 Json plan_to_json(const StudyPlan& plan) {
   Json json = {{"method", study_method}};
   for (const StudySpoon& spoon : plan.spoons) {
@@ -351,6 +459,17 @@ Json plan_to_json(const StudyPlan& plan) {
   json["vary"] = Json::object();
   for (const StudyVariation& variation : plan.variations) {
     json["vary"][study_factor_names[static_cast<std::size_t>(variation.factor)]] = variation.values;
+  }
+  if (plan.is_full_grid) json["grid"] = "full";
+  if (plan.sample.count > 0) {
+    json["sample"] = {{"method", sample_method_names[static_cast<std::size_t>(plan.sample.method)]},
+                      {"count", plan.sample.count},
+                      {"seed", plan.sample.seed},
+                      {"ranges", ranges_to_json(plan.sample.ranges)}};
+  }
+  if (plan.sensitivity.count > 0) {
+    json["sensitivity"] = {{"count", plan.sensitivity.count},
+                           {"ranges", ranges_to_json(plan.sensitivity.ranges)}};
   }
   json["claim"] = plan.tries_claim;
   json["repeats"] = plan.repeats;

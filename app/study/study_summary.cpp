@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/study/sampled_cases.h"
+
 namespace spoonbill {
 namespace {
 
@@ -103,6 +105,37 @@ void compare_repeat(const StudyPlan& plan, const DoneCase& repeat, const CaseRes
   }
 }
 
+// The margin of a case; at most zero where the food has left, also over a rim behind its centre of mass.
+double lasting_margin_m(const CaseResult& result) {
+  return result.verdict == Verdict::leaves ? std::min(result.margin_m, 0.0) : result.margin_m;
+}
+
+SensitivitySummary summarise_sensitivity(const StudyPlan& plan, const CaseResults& results) {
+  const SensitivityCases cases = list_sensitivity_cases(plan);
+  SensitivitySummary summary;
+  summary.ranges = plan.sensitivity.ranges;
+  SensitivityValues& margins_m = summary.margins_m;
+  margins_m.mixed.resize(summary.ranges.size());
+  for (std::size_t row = 0; row < cases.a.size(); ++row) {
+    std::vector<const CaseResult*> of_row{find_result(cases.a[row], results),
+                                          find_result(cases.b[row], results)};
+    for (const std::vector<StudyCase>& mixed : cases.mixed)
+      of_row.push_back(find_result(mixed[row], results));
+    if (!std::all_of(of_row.begin(), of_row.end(),
+                     [](const CaseResult* result) { return result && is_judged(*result); })) {
+      ++summary.dropped;
+      continue;
+    }
+    margins_m.a.push_back(lasting_margin_m(*of_row[0]));
+    margins_m.b.push_back(lasting_margin_m(*of_row[1]));
+    for (std::size_t k = 0; k < cases.mixed.size(); ++k) {
+      margins_m.mixed[k].push_back(lasting_margin_m(*of_row[k + 2]));
+    }
+  }
+  if (margins_m.a.size() >= 2) summary.indices = find_sobol_indices(margins_m);
+  return summary;
+}
+
 }  // namespace
 
 StudySummary summarise(const StudyPlan& plan, const CaseResults& results) {
@@ -117,6 +150,7 @@ StudySummary summarise(const StudyPlan& plan, const CaseResults& results) {
     if (!one.tilts.empty()) find_holding_range(one);
     summary.series.push_back(std::move(one));
   }
+  if (plan.sensitivity.count > 0) summary.sensitivity = summarise_sensitivity(plan, results);
   for (const auto& [key, done] : results) {
     if (!done.result.failure.empty()) summary.failures.push_back(&done);
     StudyCase usual = done.study_case;

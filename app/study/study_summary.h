@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/study/next_cases.h"
+#include "app/study/sobol_indices.h"
 
 namespace spoonbill {
 
@@ -49,9 +50,18 @@ struct TrustSummary {
   double largest_mass_change = 0.0;
 };
 
+// Sobol indices of the margin of the centre of mass to the rim.
+struct SensitivitySummary {
+  std::vector<FactorRange> ranges;
+  SensitivityValues margins_m;      // of the rows in which every case was judged
+  std::vector<SobolIndex> indices;  // of each range; empty if fewer than two rows were judged
+  std::size_t dropped = 0;          // rows with a case that was not judged
+};
+
 struct StudySummary {
   std::vector<SeriesSummary> series;
   TrustSummary trust;
+  std::optional<SensitivitySummary> sensitivity;
   std::vector<const DoneCase*> failures;  // cases that could not be judged, in the order of their keys
 };
 

@@ -41,6 +41,26 @@ Json series_json(const SeriesSummary& summary, const StudyPlan& plan) {
   return json;
 }
 
+Json sensitivity_json(const SensitivitySummary& sensitivity) {
+  Json factors = Json::array();
+  for (std::size_t k = 0; k < sensitivity.indices.size(); ++k) {
+    const FactorRange& one = sensitivity.ranges[k];
+    const SobolIndex& index = sensitivity.indices[k];
+    factors.push_back({{"factor", study_factor_names[static_cast<std::size_t>(one.factor)]},
+                       {"range", {one.range.low, one.range.high}},
+                       {"first", index.first},
+                       {"first_error", index.first_error},
+                       {"total", index.total},
+                       {"total_error", index.total_error}});
+  }
+  return {{"factors", factors},
+          {"dropped_rows", sensitivity.dropped},
+          {"margins_m",
+           {{"a", sensitivity.margins_m.a},
+            {"b", sensitivity.margins_m.b},
+            {"mixed", sensitivity.margins_m.mixed}}}};
+}
+
 Json measures_json(const SpoonMeasures& measures) {
   Json grips = Json::array();
   for (const GripMeasure& grip : measures.grips) {
@@ -151,10 +171,13 @@ Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const
       of_material = measures_json(measures.value());
       of_material["bending"] = Json();
       if (const SpoonBending* const bending = find_bending(bendings, spoon.name, material.name)) {
-        of_material["bending"] = {{"hand_m", bending->hand_m},
-                                  {"own_weight_m", bending->own_weight.drop_m},
-                                  {"with_food_m", bending->with_food.drop_m},
-                                  {"largest_strain", bending->with_food.largest_strain}};
+        of_material["bending"] = {
+            {"hand_m", bending->hand_m},
+            {"own_weight_m", bending->own_weight.drop_m},
+            {"with_food_m", bending->with_food.drop_m},
+            {"largest_strain", bending->with_food.largest_strain},
+            {"largest_stress_pa", bending->with_food.largest_strain * material.youngs_modulus_pa},
+            {"yield_stress_pa", find_yield_stress_pa(material)}};
       }
     }
     json["spoons"].push_back(one);
@@ -171,6 +194,7 @@ Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const
          {"usual", verdict_names[static_cast<std::size_t>(one.usual)]},
          {"repeated", verdict_names[static_cast<std::size_t>(one.repeated)]}});
   }
+  json["sensitivity"] = summary.sensitivity ? sensitivity_json(*summary.sensitivity) : Json();
   json["ratings"] = Json::array();
   for (const SpoonRating& rating : plan.ratings) {
     json["ratings"].push_back(

@@ -1,5 +1,5 @@
 "use strict";
-// Sorts tables by a click on a heading, and draws the plot of a quantity against the tilt.
+// Sorts tables by a click on a heading, and draws the plots of a quantity against the tilt and against a drawn factor.
 (() => {
   const valueOf = (cell) => {
     const text = cell.dataset.value ?? cell.textContent.trim();
@@ -28,11 +28,6 @@
     });
   }
 
-  const plot = document.getElementById("plot");
-  if (!plot) return;
-  const series = JSON.parse(document.getElementById("study-data").textContent);
-  const quantity = document.getElementById("quantity");
-  const spoon = document.getElementById("spoon");
   const colours = ["#1f5f8b", "#b8432f", "#2a7d4f", "#8a5aa8", "#d98a21", "#3b8f93", "#7a6a4f", "#c2548f"];
   const plotWidth = 590, left = 60, top = 14, bottom = 44, legendRow = 17, letter = 6.2;
   const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity);
@@ -50,7 +45,29 @@
     for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) list.push(k * step);
     return list;
   };
-  const draw = () => {
+  // The lines and numbers of both axes; `across` names what the horizontal one shows.
+  const drawAxes = (plot, frame, across) => {
+    for (const value of steps(frame.yLow, frame.yHigh)) {
+      plot.append(element("line", { class: "grid", x1: frame.left, x2: frame.right, y1: frame.y(value), y2: frame.y(value) }));
+      plot.append(element("text", { x: frame.left - 6, y: frame.y(value) + 4, "text-anchor": "end" },
+        String(Number(value.toPrecision(6)))));
+    }
+    for (const value of steps(frame.xLow, frame.xHigh)) {
+      plot.append(element("line", { class: "grid", x1: frame.x(value), x2: frame.x(value), y1: frame.top, y2: frame.bottom }));
+      plot.append(element("text", { x: frame.x(value), y: frame.bottom + 16, "text-anchor": "middle" },
+        Number(value.toPrecision(6)) + frame.unit));
+    }
+    plot.append(element("text", { x: (frame.left + frame.right) / 2, y: frame.bottom + 36, "text-anchor": "middle" }, across));
+  };
+  const frameOf = (xs, ys, right, height, unit) => {
+    const xLow = least(xs), xHigh = Math.max(most(xs), xLow + (unit === "°" ? 1 : 1e-6));
+    const yLow = Math.min(0, least(ys)), yHigh = Math.max(most(ys), yLow + 1e-6), bottomAt = height - bottom;
+    return { xLow, xHigh, yLow, yHigh, left, right, top, bottom: bottomAt, unit,
+      x: (value) => left + (value - xLow) / (xHigh - xLow) * (right - left),
+      y: (value) => bottomAt - (value - yLow) / (yHigh - yLow) * (bottomAt - top) };
+  };
+
+  const drawTilts = (plot, series, spoon, quantity) => {
     plot.replaceChildren();
     const shown = series.filter((one) => one.spoon === spoon.value);
     const field = quantity.value;
@@ -64,21 +81,9 @@
       plot.append(element("text", { x: left, y: 40 }, "No case has a value of this quantity."));
       return;
     }
-    const xLow = least(tilts), xHigh = Math.max(most(tilts), xLow + 1);
-    const yLow = Math.min(0, least(values)), yHigh = Math.max(most(values), yLow + 1e-6);
-    const x = (tilt) => left + (tilt - xLow) / (xHigh - xLow) * (width - left - right);
-    const y = (value) => height - bottom - (value - yLow) / (yHigh - yLow) * (height - top - bottom);
-    for (const value of steps(yLow, yHigh)) {
-      plot.append(element("line", { class: "grid", x1: left, x2: width - right, y1: y(value), y2: y(value) }));
-      plot.append(element("text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" },
-        String(Number(value.toPrecision(6)))));
-    }
-    for (const tilt of steps(xLow, xHigh)) {
-      plot.append(element("line", { class: "grid", x1: x(tilt), x2: x(tilt), y1: top, y2: height - bottom }));
-      plot.append(element("text", { x: x(tilt), y: height - bottom + 16, "text-anchor": "middle" }, tilt + "°"));
-    }
-    plot.append(element("text", { x: (left + width - right) / 2, y: height - 8, "text-anchor": "middle" },
-      "tilt (positive lifts the front)"));
+    const frame = frameOf(tilts, values, width - right, height, "°");
+    const { x, y } = frame;
+    drawAxes(plot, frame, "tilt (positive lifts the front)");
     shown.forEach((one, index) => {
       const colour = colours[index % colours.length];
       const dashes = ["none", "7 3", "2 3"][Math.floor(index / colours.length) % 3];
@@ -97,7 +102,35 @@
       plot.append(element("text", { x: width - right + 40, y: row }, one.label));
     });
   };
-  quantity.addEventListener("change", draw);
-  spoon.addEventListener("change", draw);
-  draw();
+
+  const drawSample = (plot, points, factor, quantity) => {
+    plot.replaceChildren();
+    if (points.length === 0) {
+      plot.append(element("text", { x: left, y: 40 }, "No case was judged."));
+      return;
+    }
+    const width = 760, height = 340, field = factor.value;
+    plot.setAttribute("viewBox", "0 0 " + width + " " + height);
+    const unit = field.endsWith("_deg") ? "°" : "";
+    const frame = frameOf(points.map((point) => point[field]), points.map((point) => point[quantity.value]), width - 20, height, unit);
+    drawAxes(plot, frame, factor.selectedOptions[0].textContent);
+    for (const point of points) {
+      const dot = element("circle", { class: point.verdict, cx: frame.x(point[field]), cy: frame.y(point[quantity.value]), r: 4 });
+      dot.append(element("title", {}, point.label + ": " + Number(point[quantity.value].toPrecision(4)) + ", " + point.verdict));
+      plot.append(dot);
+    }
+  };
+
+  // Draws the plot of this name, if the page has it, and again whenever one of its controls changes.
+  const show = (name, data, controls, draw) => {
+    const plot = document.getElementById(name);
+    if (!plot) return;
+    const content = JSON.parse(document.getElementById(data).textContent);
+    const chosen = controls.map((id) => document.getElementById(id));
+    const redraw = () => draw(plot, content, ...chosen);
+    chosen.forEach((control) => control.addEventListener("change", redraw));
+    redraw();
+  };
+  show("plot", "study-data", ["spoon", "quantity"], drawTilts);
+  show("sample-plot", "sample-data", ["sample-factor", "sample-quantity"], drawSample);
 })();

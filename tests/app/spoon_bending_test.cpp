@@ -1,9 +1,13 @@
-// Tests how spoons bend, against Timoshenko's theory of beams.
+// Tests how spoons bend, against Timoshenko's theory of beams and CalculiX.
 #include "app/study/spoon_bending.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
 #include <string>
 
 #include "engine/exchange/document.h"
@@ -69,6 +73,34 @@ TEST(SpoonBending, IsThatOfTimoshenkosBeam) {
     const double strain = 0.5 * height_m * moment_nm / (e * i);
     EXPECT_NEAR(loaded->largest_strain, strain, 0.15 * strain) << name;
   }
+}
+
+// The bent spoon of polypropylene beside CalculiX, whose finer mesh is taken.
+TEST(SpoonBending, IsThatOfCalculix) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  std::ifstream in(SPOONBILL_BENT_SPOON);
+  std::string line;
+  std::getline(in, line);
+  double finest_mm = 10.0, hand_mm = 0.0;
+  std::map<double, double> drop_mm;  // by the food in kg
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    double size_mm = 0.0, nodes = 0.0, food_kg = 0.0, drop = 0.0;
+    ASSERT_TRUE(std::istringstream(line) >> size_mm >> nodes >> hand_mm >> food_kg >> drop);
+    if (size_mm > finest_mm) continue;
+    finest_mm = size_mm;
+    drop_mm[food_kg] = drop;
+  }
+  ASSERT_EQ(drop_mm.size(), 2u);
+  StudySpoon spoon;
+  spoon.body = bundled_scene("spoon-bent").bodies.front();
+  spoon.bowl = find_bowl(spoon.body, Vector3::UnitY()).value();
+  const auto bending = bend_spoon(spoon, bundled_material("polypropylene"), drop_mm.rbegin()->first);
+  ASSERT_TRUE(bending.ok());
+  EXPECT_NEAR(1e3 * bending->hand_m, hand_mm, 0.01);
+  const double own_mm = drop_mm.begin()->second, loaded_mm = drop_mm.rbegin()->second;
+  EXPECT_NEAR(1e3 * bending->own_weight.drop_m, own_mm, 0.025 * own_mm);
+  EXPECT_NEAR(1e3 * bending->with_food.drop_m, loaded_mm, 0.025 * loaded_mm);
 }
 
 TEST(SpoonBending, NeedsAHandle) {

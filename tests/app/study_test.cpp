@@ -64,6 +64,28 @@ TEST(StudyCase, IsJudgedByTheTilt) {
   EXPECT_LT(rough.largest_contact_n, 3.0 * rough.food_kg * standard_gravity_m_per_s2);
 }
 
+// A spoon that lies across gets the food along its bowl, and the result of the same spoon that lies along x.
+TEST(StudyCase, LaysTheFoodAlongTheBowl) {
+  const StudyPlan along = plan_of(spoon_folder + "spoon-bowl.json");
+  const Workplace place;
+  ASSERT_EQ(run({"change", spoon_folder + "spoon-bowl.json", "rotate", "y", "90deg", "--about", "0,0,0",
+                 "--out", place.text("across.json")})
+                .code,
+            exit_done);
+  const StudyPlan across = plan_of(place.text("across.json"));
+  EXPECT_GT(std::abs(across.spoons[0].bowl.front.z()), 0.99);
+  StudyCase one = usual_case(along, 0.1, 0.0);
+  const auto size_of = [&](const StudyPlan& plan) {
+    one.spoon = plan.spoons[0].name;
+    const auto scene = make_case_scene(plan, one);
+    EXPECT_TRUE(scene.ok());
+    return bounding_box(scene->bodies[0].surface.net).extent();
+  };
+  const Vector3 lying = size_of(along), turned = size_of(across);
+  EXPECT_NEAR(lying.x(), turned.z(), 1e-4);
+  EXPECT_NEAR(lying.z(), turned.x(), 1e-4);
+}
+
 TEST(StudyCase, HasTheSameResultEachTime) {
   const StudyPlan plan = plan_of(spoon_folder + "spoon-original.json");
   const StudyCase one = usual_case(plan, 0.1, 5.0);
