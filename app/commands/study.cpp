@@ -81,16 +81,6 @@ Result<StudyPart> parse_part(const std::string& text) {
   return Error{ErrorCode::malformed, "must be NUMBER/COUNT, such as 3/40"};
 }
 
-Result<int> parse_sensitivity_count(const std::string& text) {
-  int count = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, count);
-  if (read.ec == std::errc() && read.ptr == end && sensitivity_count_range.contains(count)) return count;
-  return Error{ErrorCode::out_of_range, "must be a whole number from " +
-                                            std::to_string(sensitivity_count_range.low) + " to " +
-                                            std::to_string(sensitivity_count_range.high)};
-}
-
 // Returns the program with the arguments of this study, as a task on another machine runs it.
 std::vector<std::string> task_command(const StudyOptions& options) {
   std::error_code ignored;
@@ -105,8 +95,8 @@ std::vector<std::string> task_command(const StudyOptions& options) {
   if (options.choices.is_full_grid) {
     command.insert(command.end(), {"--grid", *options.choices.is_full_grid ? "full" : "one_at_a_time"});
   }
-  if (options.choices.sensitivity_count) {
-    command.insert(command.end(), {"--sensitivity", std::to_string(*options.choices.sensitivity_count)});
+  if (options.choices.sensitivity_count > 0) {
+    command.insert(command.end(), {"--sensitivity", std::to_string(options.choices.sensitivity_count)});
   }
   command.insert(command.end(), {"--out", std::filesystem::absolute(options.out).string(), "--workers", "1"});
   return command;
@@ -161,8 +151,8 @@ Status run_all_cases(const StudyOptions& options, const StudyPlan& plan, CaseFil
   }
 }
 
-// Prints how many cases the sensitivity analysis still needs and about how long they take, from the time of
-// the usual case of the study.
+// Prints how many cases the sensitivity analysis has and about how long they take, from the time of one in
+// the centre of its ranges. Prints nothing once they are done.
 Status announce_sensitivity(const StudyOptions& options, const StudyPlan& plan, const CaseFile& file,
                             const InterruptWatch& interrupt, Console& console) {
   const std::size_t count = plan.sensitivity.count, factors = plan.sensitivity.ranges.size();
@@ -352,10 +342,11 @@ CommandEntry add_study(OptionSet root) {
       },
       [options](bool is_full) { options->choices.is_full_grid = is_full; },
       "Vary one thing at a time (one_at_a_time), or try all combinations (full) on every spoon");
-  add_parsed_option(
-      parser, "--sensitivity", "N", parse_sensitivity_count,
-      [options](int count) { options->choices.sensitivity_count = count; },
-      "Also find what the margin depends on, by Sobol indices of N times (factors + 2) cases");
+  parser
+      .add_option("--sensitivity", options->choices.sensitivity_count,
+                  "Also find what the margin depends on, by Sobol indices of N times (factors + 2) cases")
+      .show_as("N")
+      .limit(sensitivity_count_range);
   parser.add_option("--out", options->out, "Folder of the report").show_as("DIR").require();
   parser
       .add_option("--workers", options->workers,

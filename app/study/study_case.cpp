@@ -96,7 +96,7 @@ Result<StudyCase> case_from_json(const Json& json, const std::string& source) {
 }
 
 Json result_to_json(const CaseResult& result) {
-  if (!result.failure.empty()) return {{"failure", result.failure}};
+  if (!is_judged(result)) return {{"failure", result.failure}};
   return {{"verdict", verdict_names[static_cast<std::size_t>(result.verdict)]},
           {"outside_kg", result.outside_kg},
           {"left_kg", result.left_kg},

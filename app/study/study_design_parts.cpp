@@ -92,7 +92,7 @@ std::string sample_part(const StudyPlan& plan, const CaseResults& results) {
   for (StudyCase& one : cases) {
     const CaseResult* const result = find_result(one, results);
     if (!result) continue;
-    if (!result->failure.empty()) {
+    if (!is_judged(*result)) {
       ++not_judged;
       continue;
     }

@@ -89,7 +89,7 @@ std::string strips_part(const StudyPlan& plan, const StudySummary& summary) {
       const double from = k == 0 ? tilt.tilt_deg : 0.5 * (series.tilts[k - 1].tilt_deg + tilt.tilt_deg);
       const double to =
           k + 1 == series.tilts.size() ? tilt.tilt_deg : 0.5 * (tilt.tilt_deg + series.tilts[k + 1].tilt_deg);
-      const bool is_failed = !tilt.result->failure.empty();
+      const bool is_failed = !is_judged(*tilt.result);
       const char* const name = is_failed ? "failed" : name_of(tilt.verdict);
       text += std::string("<rect class=") + name + " x=" + px(x(from)) + " y=" + px(y) +
               " width=" + px(std::max(x(to) - x(from), 1.0)) + " height=" + px(row_px - 4.0) + "><title>" +
@@ -121,7 +121,7 @@ std::string plot_part(const StudyPlan& plan, const StudySummary& summary) {
     Json points = Json::array();
     for (const JudgedTilt& tilt : series.tilts) {
       const CaseResult& result = *tilt.result;
-      if (!result.failure.empty()) continue;
+      if (!is_judged(result)) continue;
       points.push_back({{"tilt", tilt.tilt_deg},
                         {"verdict", name_of(tilt.verdict)},
                         {"outside", 100.0 * result.outside_kg / result.food_kg},
@@ -185,10 +185,10 @@ std::string bending_table(const StudyPlan& plan, const Bendings& bendings) {
       const SpoonBending* const bending = find_bending(bendings, spoon.name, material.name);
       if (!bending) continue;
       const double strain = bending->with_food.largest_strain;
+      const double stress_pa = strain * material.youngs_modulus_pa;
       table.row().text(spoon.name).text(material.name).number(1e3 * bending->hand_m, 0);
       table.number(1e3 * bending->own_weight.drop_m, 4).number(1e3 * bending->with_food.drop_m, 4);
-      table.number(100.0 * strain, 4).number(1e-6 * strain * material.youngs_modulus_pa, 3);
-      const double stress_pa = strain * material.youngs_modulus_pa;
+      table.number(100.0 * strain, 4).number(1e-6 * stress_pa, 3);
       const double yield_pa = find_yield_stress_pa(material);
       if (yield_pa > 0.0) {
         table.number(1e-6 * yield_pa, 1).number(100.0 * stress_pa / yield_pa, 2);
@@ -308,7 +308,7 @@ std::string trust_part(const StudyPlan& plan, const CaseResults& results, const 
   }
   std::set<std::string> undecided;
   for (const auto& [key, done] : results) {
-    if (done.result.failure.empty() && done.result.verdict == Verdict::undecided) undecided.insert(key);
+    if (is_judged(done.result) && done.result.verdict == Verdict::undecided) undecided.insert(key);
   }
   if (!undecided.empty()) {
     text += "<p>Not settled within " + number_text(case_motion_s) + " s:</p><ul>";
@@ -375,7 +375,7 @@ std::string cases_part(const CaseResults& results) {
         .text(variation_text(one));
     table.number(one.tilt_deg, degrees(one.tilt_deg));
     table.text(one.is_fine ? "finer cells" : one.step_division > 1 ? "half the step" : "");
-    if (!result.failure.empty()) {
+    if (!is_judged(result)) {
       table.text("not judged");
       for (int k = 0; k < 8; ++k) table.text("");
       continue;

@@ -15,7 +15,7 @@ struct StudyPicture {
   StudyCase study_case;
   std::string verdict;  // in words, or the reason why the case was not judged
   std::string png;      // bytes of the file; empty if there is no picture
-  std::string video;    // bytes of an MP4 file of the case; empty if there is none
+  std::string video;    // bytes of an MP4 file of the case; empty without ffmpeg
 };
 
 // Returns the page. Its style and its script come with the program; the error names a file that is missing.

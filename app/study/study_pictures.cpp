@@ -108,7 +108,7 @@ Result<StudyPicture> make_study_picture(const StudyPlan& plan, const StudyCase& 
   const auto result = run_case(plan, study_case, watch, &end);
   if (!result) return result.error();
   StudyPicture picture{study_case, {}, {}, {}};
-  if (!result->failure.empty()) {
+  if (!is_judged(result.value())) {
     picture.verdict = "not judged: " + result->failure;
     return picture;
   }

@@ -387,7 +387,7 @@ Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoo
     if (Status read = read_study(file, plan); !read) return read.error();
   }
   if (choices.is_full_grid) plan.is_full_grid = *choices.is_full_grid;
-  if (choices.sensitivity_count) plan.sensitivity.count = *choices.sensitivity_count;
+  if (choices.sensitivity_count > 0) plan.sensitivity.count = choices.sensitivity_count;
   if (plan.sensitivity.count > 0 && plan.sensitivity.ranges.empty()) {
     plan.sensitivity.ranges = find_spanned_ranges(plan);
     if (plan.sensitivity.ranges.empty()) {

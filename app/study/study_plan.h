@@ -97,7 +97,7 @@ inline constexpr Range<double> study_friction_range{0.0, 2.0};
 // Choices of a command line, which go before those of the study file.
 struct StudyChoices {
   std::optional<bool> is_full_grid = {};
-  std::optional<int> sensitivity_count = {};
+  int sensitivity_count = 0;  // 0: as the study file says
 };
 
 // Makes the plan of a study of these spoon files. `file` is the study file, which may set every other part of

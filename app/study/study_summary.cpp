@@ -14,13 +14,13 @@ constexpr double least_time_change_s = 0.01;
 JudgedTilt judge_tilt(const StudySeries& series, double tilt_deg, const CaseResults& results) {
   const StudyCase at = case_at(series, tilt_deg);
   JudgedTilt judged{tilt_deg, find_result(at, results)};
-  if (!judged.result->failure.empty()) return judged;
+  if (!is_judged(*judged.result)) return judged;
   judged.verdict = judged.result->verdict;
   for (const StudyCase& repeat : list_repeats(at)) {
     const CaseResult* const again = find_result(repeat, results);
     if (!again) continue;
     judged.is_repeated = true;
-    if (!again->failure.empty() || again->verdict != judged.result->verdict) {
+    if (!is_judged(*again) || again->verdict != judged.result->verdict) {
       judged.verdict = Verdict::undecided;
     }
   }
@@ -83,7 +83,7 @@ void compare_repeat(const StudyPlan& plan, const DoneCase& repeat, const CaseRes
                     TrustSummary& trust) {
   const CaseResult& again = repeat.result;
   ++trust.repeats;
-  if (!usual.failure.empty() || !again.failure.empty()) return;
+  if (!is_judged(usual) || !is_judged(again)) return;
   if (usual.verdict != again.verdict) {
     trust.disagreements.push_back({repeat.study_case, usual.verdict, again.verdict});
     return;
@@ -152,7 +152,7 @@ StudySummary summarise(const StudyPlan& plan, const CaseResults& results) {
   }
   if (plan.sensitivity.count > 0) summary.sensitivity = summarise_sensitivity(plan, results);
   for (const auto& [key, done] : results) {
-    if (!done.result.failure.empty()) summary.failures.push_back(&done);
+    if (!is_judged(done.result)) summary.failures.push_back(&done);
     StudyCase usual = done.study_case;
     usual.step_division = 1;
     usual.is_fine = false;

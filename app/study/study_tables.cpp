@@ -12,11 +12,11 @@ namespace {
 Json series_json(const SeriesSummary& summary, const StudyPlan& plan) {
   Json tilts = Json::array();
   for (const JudgedTilt& tilt : summary.tilts) {
-    tilts.push_back({{"tilt_deg", tilt.tilt_deg},
-                     {"verdict", tilt.result->failure.empty()
-                                     ? Json(verdict_names[static_cast<std::size_t>(tilt.verdict)])
-                                     : Json()},
-                     {"repeated", tilt.is_repeated}});
+    tilts.push_back(
+        {{"tilt_deg", tilt.tilt_deg},
+         {"verdict",
+          is_judged(*tilt.result) ? Json(verdict_names[static_cast<std::size_t>(tilt.verdict)]) : Json()},
+         {"repeated", tilt.is_repeated}});
   }
   Json json = case_to_json(summary.series.base);
   for (const char* const field : {"tilt_deg", "step_division", "fine"}) json.erase(field);
@@ -88,7 +88,7 @@ ClaimReading read_claim(const SeriesSummary& series) {
   const auto at = [&](double tilt_deg) -> const JudgedTilt* {
     const auto found = std::find_if(series.tilts.begin(), series.tilts.end(),
                                     [&](const JudgedTilt& tilt) { return tilt.tilt_deg == tilt_deg; });
-    return found == series.tilts.end() || !found->result->failure.empty() ? nullptr : &*found;
+    return found == series.tilts.end() || !is_judged(*found->result) ? nullptr : &*found;
   };
   const JudgedTilt *const straight = at(0.0), *const lifted = at(10.0), *const steep = at(20.0);
   if (!straight || !lifted || !steep) return ClaimReading::untried;
@@ -115,7 +115,7 @@ std::string cases_csv(const CaseResults& results) {
     line += one.is_laid_after ? ",1" : ",0";
     append_csv_number(line, one.step_division);
     line += one.is_fine ? ",1" : ",0";
-    if (!result.failure.empty()) {
+    if (!is_judged(result)) {
       line += ",,,,,,,,,," + csv_field(result.failure);
     } else {
       line += std::string(",") + verdict_names[static_cast<std::size_t>(result.verdict)];
