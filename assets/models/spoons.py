@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Makes the spoons of section 5.1 of Pungotra et al. 2013 with the program, from the handle, the bowl and recordings:
 
-    spoons.py [NAME...]
+    spoons.py [--out DIR] [NAME...]
 
-writes the documents of these names (default: all) beside this script. The environment variable SPOONBILL_PROGRAM names
-the program; the default is app/run.
+writes the documents of these names (default: all) into a folder (default: beside this script). The environment variable
+SPOONBILL_PROGRAM names the program; the default is app/run.
 
     spoon-original    handle and bowl, merged
     spoon-bent        the original, whose handle a sphere has lifted, for a wrist that hardly bends
@@ -13,13 +13,15 @@ the program; the default is app/run.
     spoon-thick       a round handle of 38 mm, for a hand that closes with little force
     spoon-rough       the original with a grip of high friction
 """
+import argparse
 import json
 import os
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
-from documents import HERE, model, write
+from documents import HERE, write
 
 ROOT = os.path.dirname(os.path.dirname(HERE))
 RECORDINGS = os.path.join(ROOT, "assets", "recordings")
@@ -58,11 +60,11 @@ def bent(folder):
 
 
 def gripped(recording):
-    def make(folder):
+    def make_spoon(folder):
         replay(folder, recording, "handle.json")
         merge_with_bowl(folder, "handle.json")
 
-    return make
+    return make_spoon
 
 
 def thick(folder):
@@ -97,21 +99,40 @@ MAKERS = {
 }
 
 
+def make(name, out):
+    """Makes the document of a name. The rough spoon is made from the original in the folder `out`."""
+    if name == "spoon-rough":
+        with open(os.path.join(out, "spoon-original.json"), encoding="utf-8") as file:
+            document = json.load(file)
+        document["body"]["regions"] = [ROUGH]
+        return finish(name, document)
+    with tempfile.TemporaryDirectory() as folder:
+        MAKERS[name](folder)
+        with open(os.path.join(folder, "spoon.json"), encoding="utf-8") as file:
+            return finish(name, json.load(file))
+
+
 def main():
-    names = sys.argv[1:] or [*MAKERS, "spoon-rough"]
-    for name in names:
-        if name == "spoon-rough":
-            document = model("spoon-original")
-            document["body"]["regions"] = [ROUGH]
-        elif name in MAKERS:
-            with tempfile.TemporaryDirectory() as folder:
-                MAKERS[name](folder)
-                with open(os.path.join(folder, "spoon.json"), encoding="utf-8") as file:
-                    document = json.load(file)
-        else:
-            sys.exit(f"spoons: '{name}' is unknown; choose from {', '.join([*MAKERS, 'spoon-rough'])}")
-        with open(shipped(name), "w", encoding="utf-8") as file:
-            write(finish(name, document), file)
+    names = [*MAKERS, "spoon-rough"]
+    parser = argparse.ArgumentParser(description="Makes the spoons of section 5.1 of Pungotra et al. 2013.")
+    parser.add_argument("--out", metavar="DIR", default=HERE, help="folder of the documents; default: beside this script")
+    parser.add_argument("names", metavar="NAME", nargs="*", help=f"default: all of {', '.join(names)}")
+    options = parser.parse_args()
+    for name in options.names:
+        if name not in names:
+            parser.error(f"'{name}' is unknown; choose from {', '.join(names)}")
+    os.makedirs(options.out, exist_ok=True)
+
+    def make_file(name):
+        document = make(name, options.out)
+        with open(os.path.join(options.out, name + ".json"), "w", encoding="utf-8") as file:
+            write(document, file)
+
+    wanted = options.names or names
+    with ThreadPoolExecutor(os.cpu_count()) as crew:
+        list(crew.map(make_file, (name for name in wanted if name != "spoon-rough")))
+    if "spoon-rough" in wanted:
+        make_file("spoon-rough")
 
 
 main()

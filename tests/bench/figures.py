@@ -68,6 +68,7 @@ WINDOW = ("frames of `spoonbill edit` at 1280x720 with the panel, on a virtual d
           "beside the 1 kHz loop, 15 s; ")
 START_CASES = {"version": ["--version"], "info": ["info", "assets/models/trimmed-plate.json"]}
 STUDY_TILTS = (-30, -20, -10, 0, 10, 20, 30)
+STUDY_HEIGHTS_MM = (7, 9, 11, 14, 17, 20)  # of the food; fewer nodes the higher it is, because its cells are near cubes
 START = "from starting the program to its end, the median of 21; "
 LATE = "p99 of how late a tick begins, as above; "
 

@@ -2,6 +2,7 @@
 """Runs the benchmarks of a build folder and reports each figure beside its target. tests/bench/run calls it."""
 
 import argparse
+import csv
 import functools
 import json
 import os
@@ -14,7 +15,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from figures import FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, START_CASES, STUDY_TILTS, TICK_CASES, WINDOW_CASES
+from figures import (FIGURES, GROWTH, HANDLE, LATTICE_COUNTS, NAMES, PAIRS, START_CASES, STUDY_HEIGHTS_MM, STUDY_TILTS,
+                     TICK_CASES, WINDOW_CASES)
 from window import drawn_while_pressing, quantile
 
 LOOP_SECONDS = 20
@@ -93,21 +95,25 @@ class Measurements:
             times.append(1e3 * (time.perf_counter() - start))
         return sorted(times)
 
-    def study_case(self, tilt_deg):
-        """Returns the processor seconds of a study of one case, from starting the program to its end."""
+    def study_case(self, tilt_deg, height_mm=14):
+        """Makes a study of one case, with food of a height. Returns its processor seconds, from starting the program to
+        its end, the nodes of the food and the seconds of its motion."""
         with tempfile.TemporaryDirectory() as folder:
             study = Path(folder) / "study.json"
             study.write_text(json.dumps({
                 "spoonbill_study": 1, "tilts_deg": [tilt_deg], "frictions": [0.1], "vary": {}, "claim": False, "repeats": False,
-                "frames_deg": [], "foods": [{"name": "gelatin", "material": "gelatin-20-1", "size_mm": [28, 14, 22]}]}))
+                "frames_deg": [], "foods": [{"name": "gelatin", "material": "gelatin-20-1", "size_mm": [28, height_mm, 22]}]}))
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             done = json.loads(output_of([
                 self.build / "app/spoonbill", "study", ROOT / "assets/models/spoon-bowl.json", "--file", study,
                 "--out", Path(folder) / "out", "--workers", "1", "--json"]))
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            with (Path(folder) / "out/cases.csv").open(encoding="utf-8", newline="") as file:
+                case = next(csv.DictReader(file))
         if done["cases"] != 1 or done["not_judged"] != 0:
             raise RuntimeError("the case was not judged")
-        return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+        return {"processor_s": after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime,
+                "nodes": int(case["nodes"]), "motion_s": float(case["motion_s"])}
 
     @functools.cache
     def loop(self, load):
@@ -309,7 +315,7 @@ def measured_start(measure, figure):
 
 
 def measured_study_case(measure, _figure):
-    times = {tilt: measure.study_case(tilt) for tilt in STUDY_TILTS}
+    times = {tilt: measure.study_case(tilt)["processor_s"] for tilt in STUDY_TILTS}
     return {"ours": max(times.values()), "details": {str(tilt): seconds for tilt, seconds in times.items()}}
 
 
@@ -357,6 +363,11 @@ def grown(measure):
         cases = [case for curve in curves.values() for case in curve.values()]
         times = measure.medians(cases, repetitions=3, seconds=0.02)
         growth[axis] = {name: {str(n): times[case] for n, case in curve.items()} for name, curve in curves.items()}
+    say("growth of a study's case")
+    by_height = [measure.study_case(0, height) for height in STUDY_HEIGHTS_MM]
+    by_tilt = [measure.study_case(tilt) for tilt in STUDY_TILTS]
+    growth["study_nodes"] = [[case["nodes"], 1e6 * case["processor_s"]] for case in by_height]
+    growth["study_seconds"] = [[case["motion_s"], 1e6 * case["processor_s"]] for case in by_tilt]
     return growth
 
 

@@ -45,8 +45,8 @@ class MadeUp:
     def start(self, _arguments):
         return [20.0, 30.0, 90.0]
 
-    def study_case(self, tilt_deg):
-        return 1.0 + abs(tilt_deg) / 20
+    def study_case(self, tilt_deg, height_mm=14):
+        return {"processor_s": 1.0 + abs(tilt_deg) / 20, "nodes": 10000 // height_mm, "motion_s": 2.0 + abs(tilt_deg) / 10}
 
     def loop(self, load):
         ours = {"ticks": 9990, "missed": 10 if load == "idle" else 30, "p99_us": 80.0}
@@ -75,6 +75,11 @@ class Report(unittest.TestCase):
         self.assertEqual([(row["name"], row["case"]) for row in rows], [(f.name, f.case) for f in FIGURES])
         for row in rows:
             self.assertGreaterEqual(row.keys(), {"name", "ours", "peer", "ratio", "target", "met"})
+
+    def test_growth_has_the_cost_of_a_case_by_nodes_and_by_seconds(self):
+        growth = json.loads(run("--json", "--growth", "png_ms")[1])["growth_us"]
+        self.assertGreater(len(growth["study_nodes"]), 4)
+        self.assertIn([5.0, 2.5e6], growth["study_seconds"])
 
     def test_targets_are_judged_by_ratio_or_by_our_own_value(self):
         rows = {row["name"]: row for row in json.loads(run("--json")[1])["figures"]}
