@@ -252,7 +252,7 @@ Result<bool> merge_and_count(const StudyOptions& options, const StudyPlan& plan,
 Status finish(const StudyOptions& options, const StudyPlan& plan, CaseFile& file,
               const std::vector<StudyPicture>& pictures, Console& console) {
   const StudySummary summary = summarise(plan, file.results());
-  const Bendings bendings = bend_all(plan);
+  const Bendings bendings = bend_all(plan, count_workers(options));
   const auto content = study_json(plan, file.results(), summary, bendings);
   if (!content) return content.error();
   const auto page = make_study_page(plan, file.results(), summary, bendings, pictures);

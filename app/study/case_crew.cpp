@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -27,11 +28,27 @@ Result<CaseResult> run_safely(const StudyPlan& plan, const StudyCase& study_case
   }
 }
 
+// Returns the places of cases in groups that have the same result, because the spoons have one shape.
+std::vector<std::vector<std::size_t>> group_equal_cases(const StudyPlan& plan,
+                                                        const std::vector<StudyCase>& cases) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::map<std::string, std::size_t> group_of;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    StudyCase common = cases[k];
+    common.spoon = find_first_of_shape(plan, common.spoon);
+    const auto [found, is_new] = group_of.emplace(case_key(common), groups.size());
+    if (is_new) groups.emplace_back();
+    groups[found->second].push_back(k);
+  }
+  return groups;
+}
+
 }  // namespace
 
 Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int workers,
                  const CaseReceiver& receive, const std::function<bool()>& is_stopped) {
   SPOONBILL_ASSERT(workers >= 1);
+  const std::vector<std::vector<std::size_t>> groups = group_equal_cases(plan, cases);
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stopped{false};
   std::mutex mutex;  // guards `ended`
@@ -39,18 +56,18 @@ Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int
   std::deque<std::pair<std::size_t, Result<CaseResult>>> ended;
   const auto work = [&] {
     const CaseWatch watch = [&](const Trial&, const Simulation&) { return !stopped.load(); };
-    for (std::size_t k = next++; k < cases.size() && !stopped.load(); k = next++) {
-      auto result = run_safely(plan, cases[k], watch);
+    for (std::size_t k = next++; k < groups.size() && !stopped.load(); k = next++) {
+      auto result = run_safely(plan, cases[groups[k].front()], watch);
       const std::lock_guard lock(mutex);
       ended.emplace_back(k, std::move(result));
       changed.notify_one();
     }
   };
-  const std::size_t count = std::min(static_cast<std::size_t>(workers), cases.size());
+  const std::size_t count = std::min(static_cast<std::size_t>(workers), groups.size());
   std::vector<std::jthread> threads;
   for (std::size_t k = 0; k < count; ++k) threads.emplace_back(work);
   Status status;
-  for (std::size_t received = 0; received < cases.size() && status.ok();) {
+  for (std::size_t received = 0; received < groups.size() && status.ok();) {
     std::unique_lock lock(mutex);
     changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return !ended.empty(); });
     if (is_stopped()) {
@@ -60,7 +77,10 @@ Status run_cases(const StudyPlan& plan, const std::vector<StudyCase>& cases, int
       ended.pop_front();
       lock.unlock();
       ++received;
-      status = result ? receive(cases[at], result.value()) : Status(result.error());
+      status = result ? Status() : Status(result.error());
+      for (const std::size_t equal : groups[at]) {
+        if (status) status = receive(cases[equal], result.value());
+      }
     }
   }
   stopped = !status.ok();

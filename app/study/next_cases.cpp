@@ -9,6 +9,9 @@
 namespace spoonbill {
 namespace {
 
+constexpr double least_time_change_s = 0.01;
+// Changes by a finer lattice that ask for the finest one.
+constexpr double time_change_limit = 0.1, mass_change_limit = 0.03;
 constexpr double claim_bowl_depth = 0.5, claim_pitch_deg = -10.0, claim_friction = 0.02;
 
 StudyCase varied_case(StudyCase base, StudyFactor factor, double value) {
@@ -106,10 +109,15 @@ StudyCase case_at(const StudySeries& series, double tilt_deg) {
 }
 
 std::vector<StudyCase> list_repeats(const StudyCase& study_case) {
-  StudyCase half_step = study_case, fine = study_case;
+  StudyCase half_step = study_case;
   half_step.step_division = 2;
-  fine.is_fine = true;
-  return {half_step, fine};
+  return {half_step, with_refinement(study_case, 1)};
+}
+
+StudyCase with_refinement(const StudyCase& study_case, int refinement) {
+  StudyCase refined = study_case;
+  refined.refinement = refinement;
+  return refined;
 }
 
 std::vector<double> list_known_tilts(const StudySeries& series, const CaseResults& results) {
@@ -138,6 +146,44 @@ const CaseResult* find_result(const StudyCase& study_case, const CaseResults& re
   return found == results.end() ? nullptr : &found->second.result;
 }
 
+CaseDifference compare_cases(const StudyPlan& plan, const StudyCase& repeat, const CaseResult& usual,
+                             const CaseResult& again) {
+  CaseDifference difference;
+  difference.is_other_verdict = differ(usual, again);
+  if (difference.is_other_verdict || !is_judged(usual)) return difference;
+  if (usual.first_spill_s && again.first_spill_s && std::abs(*usual.first_spill_s) > 0.0) {
+    const double change_s = std::abs(*again.first_spill_s - *usual.first_spill_s);
+    if (change_s > least_time_change_s) difference.time = change_s / std::abs(*usual.first_spill_s);
+  }
+  const auto food = std::find_if(plan.foods.begin(), plan.foods.end(),
+                                 [&](const StudyFood& named) { return named.name == repeat.food; });
+  if (usual.verdict == Verdict::overhangs && food != plan.foods.end() && !food->body.material.plastic) {
+    difference.mass = std::abs(again.outside_kg / again.food_kg - usual.outside_kg / usual.food_kg);
+  }
+  return difference;
+}
+
+const CaseResult* find_confirmed_refinement(const StudyCase& usual, const CaseResults& results) {
+  const CaseResult *const fine = find_result(with_refinement(usual, 1), results), *const finest = find_result(
+                                                                                      with_refinement(usual,
+                                                                                                      2),
+                                                                                      results);
+  return fine && finest && is_judged(*fine) && !differ(*fine, *finest) ? fine : nullptr;
+}
+
+namespace {
+
+bool needs_finest(const StudyPlan& plan, const StudyCase& usual, const CaseResults& results) {
+  const StudyCase finer = with_refinement(usual, 1);
+  const CaseResult* const fine = find_result(finer, results);
+  if (!fine) return false;
+  const CaseDifference difference = compare_cases(plan, finer, *find_result(usual, results), *fine);
+  return difference.is_other_verdict || difference.time > time_change_limit ||
+         difference.mass > mass_change_limit;
+}
+
+}  // namespace
+
 std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults& results) {
   std::vector<StudyCase> next;
   std::set<std::string> keys;
@@ -156,7 +202,9 @@ std::vector<StudyCase> find_next_cases(const StudyPlan& plan, const CaseResults&
     if (next.size() > before || !plan.repeats) continue;
     for (const VerdictChange& change : find_changes(series, results)) {
       for (const double tilt : {change.low_deg, change.high_deg}) {
-        for (const StudyCase& repeat : list_repeats(case_at(series, tilt))) need(repeat);
+        const StudyCase usual = case_at(series, tilt);
+        for (const StudyCase& repeat : list_repeats(usual)) need(repeat);
+        if (needs_finest(plan, usual, results)) need(with_refinement(usual, 2));
       }
     }
   }

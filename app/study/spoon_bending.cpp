@@ -1,8 +1,14 @@
 #include "app/study/spoon_bending.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
+#include <optional>
+#include <vector>
 
+#include "app/study/spoon_measures.h"
+#include "engine/base/assert.h"
 #include "engine/base/text.h"
 #include "engine/simulation/rest_shape.h"
 #include "engine/trial/height_map.h"
@@ -14,21 +20,6 @@ namespace {
 const Vector3 up = Vector3::UnitY();
 constexpr double held_fraction = 1.0 / 3.0;  // of the handle's length
 constexpr double shortest_handle_m = 0.02;
-
-// Returns the end of the spoon behind the bowl, as a distance from the rim's centre along the front.
-double find_end_m(const StudySpoon& spoon) {
-  constexpr int steps = 200;
-  const Surface& surface = spoon.body.surface;
-  double end_m = infinity;
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; j <= steps; ++j) {
-      const Vector3 point = position(surface, surface.u.parameter_at(static_cast<double>(i) / steps),
-                                     surface.v.parameter_at(static_cast<double>(j) / steps));
-      end_m = std::min(end_m, spoon.bowl.front.dot(point - spoon.bowl.centre_m));
-    }
-  }
-  return end_m;
-}
 
 }  // namespace
 
@@ -59,7 +50,7 @@ Result<LeverBending> bend_lever(const HeldLever& lever, double load_kg) {
 
 Result<SpoonBending> bend_spoon(const StudySpoon& spoon, const Material& material, double food_kg) {
   const Bowl& bowl = spoon.bowl;
-  const double end_m = find_end_m(spoon), handle_m = -0.5 * bowl.length_m - end_m;
+  const auto [end_m, handle_m] = find_handle(spoon);
   if (handle_m < shortest_handle_m) {
     return Error{ErrorCode::unsupported,
                  spoon.file.string() + ": the spoon has no handle that a hand could hold"};
@@ -85,6 +76,43 @@ Result<SpoonBending> bend_spoon(const StudySpoon& spoon, const Material& materia
   bending.own_weight = own.value();
   bending.with_food = with_food.value();
   return bending;
+}
+
+Bendings bend_all(const StudyPlan& plan, int workers) {
+  SPOONBILL_ASSERT(workers >= 1);
+  struct Bent {
+    const StudySpoon* spoon;
+    const Material* material;
+    std::optional<SpoonBending> bending;
+  };
+  std::vector<Bent> all;
+  for (const StudySpoon& spoon : plan.spoons) {
+    for (const Material& material : plan.materials) all.push_back({&spoon, &material, std::nullopt});
+  }
+  const double food_kg = find_food_kg(plan.foods.front());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < all.size(); k = next++) {
+      auto bending = bend_spoon(*all[k].spoon, *all[k].material, food_kg);
+      if (bending) all[k].bending = bending.value();
+    }
+  };
+  std::vector<std::future<void>> crew;
+  const auto wanted = std::min(static_cast<std::size_t>(workers), all.size());
+  for (std::size_t k = 1; k < wanted; ++k) crew.push_back(std::async(std::launch::async, work));
+  work();
+  for (std::future<void>& worker : crew) worker.get();
+  Bendings bendings;
+  for (const Bent& one : all) {
+    if (one.bending) bendings.emplace(std::pair{one.spoon->name, one.material->name}, *one.bending);
+  }
+  return bendings;
+}
+
+const SpoonBending* find_bending(const Bendings& bendings, const std::string& spoon,
+                                 const std::string& material) {
+  const auto found = bendings.find({spoon, material});
+  return found != bendings.end() ? &found->second : nullptr;
 }
 
 }  // namespace spoonbill

@@ -1,6 +1,10 @@
 // How a spoon bends in the hand, under its own weight and with the food.
 #pragma once
 
+#include <map>
+#include <string>
+#include <utility>
+
 #include "app/study/study_plan.h"
 #include "engine/base/result.h"
 #include "engine/scene/material.h"
@@ -36,5 +40,14 @@ struct SpoonBending {
 // Bends a spoon of one material, held in the rear third of its handle. The drop is that of the front of the
 // rim. Fails if the spoon has no handle of at least twice the length that is held.
 Result<SpoonBending> bend_spoon(const StudySpoon& spoon, const Material& material, double food_kg);
+
+// Bending of spoons, by the names of spoon and material.
+using Bendings = std::map<std::pair<std::string, std::string>, SpoonBending>;
+// Bends all spoons of all materials with the first food, on `workers` threads. Leaves out those that cannot
+// be bent, such as bowls without a handle.
+Bendings bend_all(const StudyPlan& plan, int workers);
+// Returns null if the spoon of this material was left out.
+const SpoonBending* find_bending(const Bendings& bendings, const std::string& spoon,
+                                 const std::string& material);
 
 }  // namespace spoonbill

@@ -12,37 +12,59 @@ namespace {
 constexpr double grip_step_m = 0.02;
 constexpr int samples_along = 400, samples_around = 96;
 
-struct PlanPoint {
-  double along_m = 0.0, across_m = 0.0;  // from the rim's centre
-};
-
-std::vector<PlanPoint> sample_points(const StudySpoon& spoon) {
-  std::vector<PlanPoint> points;
+// Returns points of the surface of the spoon, in the frame of its bowl: along the front, up and to the left.
+std::vector<Vector3> sample_points(const StudySpoon& spoon) {
+  std::vector<Vector3> points;
   const Surface& surface = spoon.body.surface;
+  const Bowl& bowl = spoon.bowl;
   for (int i = 0; i < samples_around; ++i) {
     for (int j = 0; j <= samples_along; ++j) {
       const Vector3 offset =
           position(surface, surface.u.parameter_at(static_cast<double>(i) / samples_around),
                    surface.v.parameter_at(static_cast<double>(j) / samples_along)) -
-          spoon.bowl.centre_m;
-      points.push_back({spoon.bowl.front.dot(offset), spoon.bowl.left().dot(offset)});
+          bowl.centre_m;
+      points.emplace_back(bowl.front.dot(offset), bowl.normal.dot(offset), bowl.left().dot(offset));
     }
   }
   return points;
 }
 
-// Returns the width of the spoon within a millimetre of a place along it.
-double find_width_m(const std::vector<PlanPoint>& points, double along_m) {
-  double low = infinity, high = -infinity;
-  for (const PlanPoint& point : points) {
-    if (std::abs(point.along_m - along_m) > 1e-3) continue;
-    low = std::min(low, point.across_m);
-    high = std::max(high, point.across_m);
+double find_end_m(const std::vector<Vector3>& points) {
+  double end_m = infinity;
+  for (const Vector3& point : points) end_m = std::min(end_m, point.x());
+  return end_m;
+}
+
+// Returns the box about the part of the spoon within a millimetre of a place along it.
+Box find_slice(const std::vector<Vector3>& points, double along_m) {
+  Box slice;
+  for (const Vector3& point : points) {
+    if (std::abs(point.x() - along_m) <= 1e-3) slice.include(point);
   }
-  return std::max(0.0, high - low);
+  return slice;
+}
+
+double find_width_m(const std::vector<Vector3>& points, double along_m) {
+  const Box slice = find_slice(points, along_m);
+  return slice.is_empty() ? 0.0 : slice.extent().z();
 }
 
 }  // namespace
+
+Handle find_handle(const StudySpoon& spoon) {
+  const double end_m = find_end_m(sample_points(spoon));
+  return {end_m, -0.5 * spoon.bowl.length_m - end_m};
+}
+
+SpoonSection find_section(const StudySpoon& spoon, double from_end_m) {
+  const std::vector<Vector3> points = sample_points(spoon);
+  const Box slice = find_slice(points, find_end_m(points) + from_end_m);
+  if (slice.is_empty()) return {};
+  const Vector3 centre = slice.centre();
+  const Bowl& bowl = spoon.bowl;
+  return {bowl.centre_m + centre.x() * bowl.front + centre.y() * bowl.normal + centre.z() * bowl.left(),
+          slice.extent().z()};
+}
 
 double find_food_kg(const StudyFood& food) {
   return compute_enclosed_mass(food.body.surface).volume_m3 * food.body.material.density_kg_per_m3;
@@ -56,12 +78,11 @@ Result<SpoonMeasures> measure_spoon(const StudySpoon& spoon, const Material& mat
   SpoonMeasures measures;
   measures.mass_kg = mass.volume_m3 * material.density_kg_per_m3;
   measures.centre_m = mass.centre_m;
-  const std::vector<PlanPoint> points = sample_points(spoon);
-  const auto [end, tip] =
-      std::minmax_element(points.begin(), points.end(),
-                          [](const PlanPoint& a, const PlanPoint& b) { return a.along_m < b.along_m; });
-  const double end_m = end->along_m;
-  measures.length_m = tip->along_m - end_m;
+  const std::vector<Vector3> points = sample_points(spoon);
+  const double end_m = find_end_m(points);
+  double tip_m = -infinity;
+  for (const Vector3& point : points) tip_m = std::max(tip_m, point.x());
+  measures.length_m = tip_m - end_m;
   const double centre_along_m = spoon.bowl.front.dot(mass.centre_m - spoon.bowl.centre_m);
   measures.balance_m = centre_along_m - end_m;
   // The handle ends where the bowl begins.

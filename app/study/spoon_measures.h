@@ -25,6 +25,21 @@ struct GripMeasure {
   double force_n = 0.0;
 };
 
+// The handle of a spoon along the direction of the front. Lengths from the end of the handle.
+struct Handle {
+  double end_m = 0.0;     // from the rim's centre, along the front; negative
+  double length_m = 0.0;  // up to where the bowl begins; not positive if the spoon has no handle
+};
+Handle find_handle(const StudySpoon& spoon);
+
+// Section of a spoon across the direction of the front, `from_end_m` from the end of the handle: the centre
+// of the box about it and its width.
+struct SpoonSection {
+  Vector3 centre_m = Vector3::Zero();
+  double width_m = 0.0;
+};
+SpoonSection find_section(const StudySpoon& spoon, double from_end_m);
+
 struct SpoonMeasures {
   double length_m = 0.0;  // along the direction of the front
   double mass_kg = 0.0;

@@ -55,7 +55,7 @@ std::string case_key(const StudyCase& study_case) {
                     number_text(study_case.friction) + (variation.empty() ? "" : ", " + variation) +
                     ", tilt " + number_text(study_case.tilt_deg) + "°";
   if (study_case.step_division != 1) key += ", steps divided by " + std::to_string(study_case.step_division);
-  if (study_case.is_fine) key += ", finer cells";
+  if (study_case.refinement > 0) key += study_case.refinement == 1 ? ", finer cells" : ", finest cells";
   return key;
 }
 
@@ -72,7 +72,7 @@ Json case_to_json(const StudyCase& study_case) {
           {"tilt_deg", study_case.tilt_deg},
           {"laid_after", study_case.is_laid_after},
           {"step_division", study_case.step_division},
-          {"fine", study_case.is_fine}};
+          {"refinement", study_case.refinement}};
 }
 
 Result<StudyCase> case_from_json(const Json& json, const std::string& source) {
@@ -90,7 +90,7 @@ Result<StudyCase> case_from_json(const Json& json, const std::string& source) {
   study_case.tilt_deg = reader.number("tilt_deg", any_number);
   study_case.is_laid_after = reader.boolean("laid_after");
   study_case.step_division = reader.integer("step_division", {1, 8});
-  study_case.is_fine = reader.boolean("fine");
+  study_case.refinement = reader.integer("refinement", study_refinement_range);
   if (Status status = reader.status(); !status) return status.error();
   return study_case;
 }

@@ -23,9 +23,11 @@ struct StudyCase {
   double tilt_deg = 0.0;       // turn of the spoon with the food in it
   bool is_laid_after = false;  // whether the food is laid in after the tilt instead of before
   int step_division = 1;       // Sculpting::step_division
-  bool is_fine = false;        // whether the food has a finer lattice
+  int refinement = 0;          // of the food's lattice: 0 usual, 1 finer, 2 finest
   friend bool operator==(const StudyCase&, const StudyCase&) = default;
 };
+
+inline constexpr Range<int> study_refinement_range{0, 2};
 
 // A value of a case that a study varies, by its name in files.
 enum class StudyFactor { helping, stiffness, depth, width, curvature, pitch, friction, tilt };

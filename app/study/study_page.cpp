@@ -291,8 +291,9 @@ std::string trust_part(const StudyPlan& plan, const CaseResults& results, const 
         "finer cells: " +
         std::to_string(trust.repeats) + " repeats. The verdict differs in " +
         std::to_string(trust.disagreements.size()) +
-        " of them; these tilts count as undecided. Where both spill, the time of the first spill differs "
-        "by at most " +
+        " of them. Where finer cells give another verdict, the finest cells decide: with the same "
+        "verdict as the finer ones, it counts; all other tilts with different verdicts are undecided. "
+        "Where both spill, the time of the first spill differs by at most " +
         decimals_text(100.0 * trust.largest_time_change, 1) +
         " %; the overhanging mass of food that does not yield by at most " +
         decimals_text(100.0 * trust.largest_mass_change, 1) +
@@ -374,7 +375,10 @@ std::string cases_part(const CaseResults& results) {
         .number(one.friction, number_text(one.friction))
         .text(variation_text(one));
     table.number(one.tilt_deg, degrees(one.tilt_deg));
-    table.text(one.is_fine ? "finer cells" : one.step_division > 1 ? "half the step" : "");
+    table.text(one.refinement == 2     ? "finest cells"
+               : one.refinement == 1   ? "finer cells"
+               : one.step_division > 1 ? "half the step"
+                                       : "");
     if (!is_judged(result)) {
       table.text("not judged");
       for (int k = 0; k < 8; ++k) table.text("");

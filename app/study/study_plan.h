@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/study/spoons_and_foods.h"
 #include "app/study/study_case.h"
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
@@ -15,20 +16,6 @@
 #include "engine/trial/bowl.h"
 
 namespace spoonbill {
-
-// A spoon as the trials use it: one body, opening upwards, with the bowl found on it.
-struct StudySpoon {
-  std::string name;  // that of the file, without ending
-  std::filesystem::path file;
-  Body body;
-  Bowl bowl;
-};
-
-// Food of the trials: its shape at its size, with its material.
-struct StudyFood {
-  std::string name;
-  Body body;
-};
 
 // Values of a factor, other than friction and tilt, which have lists of their own.
 struct StudyVariation {
@@ -92,7 +79,6 @@ struct StudyPlan {
 };
 
 inline constexpr Range<double> study_tilt_range_deg{-60.0, 60.0};
-inline constexpr Range<double> study_friction_range{0.0, 2.0};
 
 // Choices of a command line, which go before those of the study file.
 struct StudyChoices {
@@ -128,6 +114,9 @@ struct StudyChoices {
 // missing model, and a spoon without a bowl or with another name than plain text.
 Result<StudyPlan> make_study_plan(const std::vector<std::filesystem::path>& spoons,
                                   const std::filesystem::path& file, const StudyChoices& choices = {});
+
+// Returns the name of the first spoon of the plan that has the same surface and rim as the named one.
+const std::string& find_first_of_shape(const StudyPlan& plan, const std::string& spoon);
 
 // Returns a line for each food that is longer or wider than the bowl of a spoon. It lies on the rim, so that
 // its verdicts say little about the bowl.

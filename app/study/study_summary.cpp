@@ -8,22 +8,22 @@
 namespace spoonbill {
 namespace {
 
-constexpr double least_time_change_s = 0.01;
-
 // Judges the case of a series at a tilt by its own verdict and those of its repeats.
 JudgedTilt judge_tilt(const StudySeries& series, double tilt_deg, const CaseResults& results) {
   const StudyCase at = case_at(series, tilt_deg);
   JudgedTilt judged{tilt_deg, find_result(at, results)};
   if (!is_judged(*judged.result)) return judged;
-  judged.verdict = judged.result->verdict;
+  bool is_decided = true;
   for (const StudyCase& repeat : list_repeats(at)) {
     const CaseResult* const again = find_result(repeat, results);
     if (!again) continue;
     judged.is_repeated = true;
-    if (!is_judged(*again) || again->verdict != judged.result->verdict) {
-      judged.verdict = Verdict::undecided;
-    }
+    const bool agrees = is_judged(*again) && again->verdict == judged.result->verdict;
+    is_decided &= agrees || (repeat.refinement > 0 && find_confirmed_refinement(at, results));
   }
+  if (!is_decided) return judged;
+  if (const CaseResult* const refined = find_confirmed_refinement(at, results)) judged.result = refined;
+  judged.verdict = judged.result->verdict;
   return judged;
 }
 
@@ -81,28 +81,13 @@ void find_holding_range(SeriesSummary& summary) {
 
 void compare_repeat(const StudyPlan& plan, const DoneCase& repeat, const CaseResult& usual,
                     TrustSummary& trust) {
-  const CaseResult& again = repeat.result;
   ++trust.repeats;
-  if (!is_judged(usual) || !is_judged(again)) return;
-  if (usual.verdict != again.verdict) {
-    trust.disagreements.push_back({repeat.study_case, usual.verdict, again.verdict});
-    return;
+  const CaseDifference difference = compare_cases(plan, repeat.study_case, usual, repeat.result);
+  if (difference.is_other_verdict && is_judged(usual) && is_judged(repeat.result)) {
+    trust.disagreements.push_back({repeat.study_case, usual.verdict, repeat.result.verdict});
   }
-  if (usual.first_spill_s && again.first_spill_s) {
-    const double change_s = std::abs(*again.first_spill_s - *usual.first_spill_s);
-    if (change_s > least_time_change_s && std::abs(*usual.first_spill_s) > 0.0) {
-      trust.largest_time_change =
-          std::max(trust.largest_time_change, change_s / std::abs(*usual.first_spill_s));
-    }
-  }
-  const auto food = std::find_if(plan.foods.begin(), plan.foods.end(), [&](const StudyFood& named) {
-    return named.name == repeat.study_case.food;
-  });
-  if (usual.verdict == Verdict::overhangs && food != plan.foods.end() && !food->body.material.plastic) {
-    trust.largest_mass_change =
-        std::max(trust.largest_mass_change,
-                 std::abs(again.outside_kg / again.food_kg - usual.outside_kg / usual.food_kg));
-  }
+  trust.largest_time_change = std::max(trust.largest_time_change, difference.time);
+  trust.largest_mass_change = std::max(trust.largest_mass_change, difference.mass);
 }
 
 // The margin of a case; at most zero where the food has left, also over a rim behind its centre of mass.
@@ -153,10 +138,13 @@ StudySummary summarise(const StudyPlan& plan, const CaseResults& results) {
   if (plan.sensitivity.count > 0) summary.sensitivity = summarise_sensitivity(plan, results);
   for (const auto& [key, done] : results) {
     if (!is_judged(done.result)) summary.failures.push_back(&done);
-    StudyCase usual = done.study_case;
+    const StudyCase& one = done.study_case;
+    StudyCase usual = one;
     usual.step_division = 1;
-    usual.is_fine = false;
-    if (usual == done.study_case) continue;
+    usual.refinement = one.refinement == 2 ? 1 : 0;
+    if (usual == one) continue;
+    // The finer lattice is compared with the finest one instead of the usual one, where that was tried.
+    if (one.refinement == 1 && find_result(with_refinement(one, 2), results)) continue;
     if (const CaseResult* const result = find_result(usual, results)) {
       compare_repeat(plan, done, *result, summary.trust);
     }

@@ -14,8 +14,10 @@ namespace spoonbill {
 // A result at a tilt, after its repeats were compared with it.
 struct JudgedTilt {
   double tilt_deg = 0.0;
-  const CaseResult* result = nullptr;    // of the usual lattice and steps
-  Verdict verdict = Verdict::undecided;  // undecided if a repeat disagrees
+  // Result with the usual steps, on the usual lattice or, where this and the finer one differ and the finest
+  // one confirms the finer one, on the finer lattice.
+  const CaseResult* result = nullptr;
+  Verdict verdict = Verdict::undecided;  // undecided if repeats disagree
   bool is_repeated = false;
 };
 
@@ -33,7 +35,8 @@ struct SeriesSummary {
   std::vector<VerdictChange> changes;
 };
 
-// A repeat whose verdict differs from that of the case.
+// A repeat whose verdict differs from that of the case, or that of the finest lattice from that of the finer
+// one.
 struct Disagreement {
   StudyCase repeat;
   Verdict usual = Verdict::undecided, repeated = Verdict::undecided;
@@ -43,11 +46,8 @@ struct Disagreement {
 struct TrustSummary {
   int repeats = 0;
   std::vector<Disagreement> disagreements;
-  // Largest relative change of the time of first spill, of cases that leave in both runs. Times are taken
-  // from the start of the turn, and differences below a hundredth of a second do not count.
-  double largest_time_change = 0.0;
-  // Largest change of the overhanging mass of food that does not yield, as a fraction of the food's mass.
-  double largest_mass_change = 0.0;
+  // Largest CaseDifference::time and mass.
+  double largest_time_change = 0.0, largest_mass_change = 0.0;
 };
 
 // Sobol indices of the margin of the centre of mass to the rim.

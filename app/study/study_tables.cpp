@@ -19,7 +19,7 @@ Json series_json(const SeriesSummary& summary, const StudyPlan& plan) {
          {"repeated", tilt.is_repeated}});
   }
   Json json = case_to_json(summary.series.base);
-  for (const char* const field : {"tilt_deg", "step_division", "fine"}) json.erase(field);
+  for (const char* const field : {"tilt_deg", "step_division", "refinement"}) json.erase(field);
   json["for_claim"] = summary.series.is_for_claim;
   json["varied"] = summary.series.varied
                        ? Json(study_factor_names[static_cast<std::size_t>(*summary.series.varied)])
@@ -101,7 +101,8 @@ ClaimReading read_claim(const SeriesSummary& series) {
 std::string cases_csv(const CaseResults& results) {
   std::string text =
       "spoon,food,friction,helping,stiffness,bowl_depth,bowl_width,bowl_curvature,pitch_deg,tilt_deg,"
-      "laid_after,step_division,fine,verdict,outside_g,left_g,side,margin_mm,first_spill_s,largest_contact_n,"
+      "laid_after,step_division,refinement,verdict,outside_g,left_g,side,margin_mm,first_spill_s,largest_"
+      "contact_n,"
       "motion_s,"
       "nodes,failure\n";
   for (const auto& [key, done] : results) {
@@ -114,7 +115,7 @@ std::string cases_csv(const CaseResults& results) {
     }
     line += one.is_laid_after ? ",1" : ",0";
     append_csv_number(line, one.step_division);
-    line += one.is_fine ? ",1" : ",0";
+    line += "," + std::to_string(one.refinement);
     if (!is_judged(result)) {
       line += ",,,,,,,,,," + csv_field(result.failure);
     } else {
@@ -136,24 +137,6 @@ std::string cases_csv(const CaseResults& results) {
     text += line + "\n";
   }
   return text;
-}
-
-const SpoonBending* find_bending(const Bendings& bendings, const std::string& spoon,
-                                 const std::string& material) {
-  const auto found = bendings.find({spoon, material});
-  return found == bendings.end() ? nullptr : &found->second;
-}
-
-Bendings bend_all(const StudyPlan& plan) {
-  Bendings bendings;
-  const double food_kg = find_food_kg(plan.foods.front());
-  for (const StudySpoon& spoon : plan.spoons) {
-    for (const Material& material : plan.materials) {
-      const auto bending = bend_spoon(spoon, material, food_kg);
-      if (bending) bendings.emplace(std::pair{spoon.name, material.name}, bending.value());
-    }
-  }
-  return bendings;
 }
 
 Result<Json> study_json(const StudyPlan& plan, const CaseResults& results, const StudySummary& summary,

@@ -2,9 +2,7 @@
 // SI in the JSON.
 #pragma once
 
-#include <map>
 #include <string>
-#include <utility>
 
 #include "app/study/spoon_bending.h"
 #include "app/study/study_summary.h"
@@ -15,15 +13,6 @@ namespace spoonbill {
 
 // Returns the text of cases.csv: a row for each case in the order of the keys.
 std::string cases_csv(const CaseResults& results);
-
-// Bending of spoons, by the names of spoon and material.
-using Bendings = std::map<std::pair<std::string, std::string>, SpoonBending>;
-// Bends all spoons of all materials with the first food. Leaves out those that cannot be bent, such as bowls
-// without a handle.
-Bendings bend_all(const StudyPlan& plan);
-// Returns null if the spoon of this material was left out.
-const SpoonBending* find_bending(const Bendings& bendings, const std::string& spoon,
-                                 const std::string& material);
 
 // Returns the content of study.json: plan, measures of the spoons, series, repeats and the cases that could
 // not be judged. Fails if a spoon encloses no volume.

@@ -40,11 +40,14 @@ MassPoints::MassPoints(const SpringLattice& lattice, const Surface& at_rest) {
         for (std::size_t c = 0; c < 8; ++c) {
           cell.nodes[c] = mesh.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1));
         }
+        // A cell that is farther inside than its own size needs no closer look.
+        const bool is_whole =
+            !inside || -inside->at(corners[0]).distance_m > (corners[7] - corners[0]).norm();
         std::vector<unsigned char> places;
         for (std::size_t place = 0; place < weights_.size(); ++place) {
           Vector3 point = Vector3::Zero();
           for (std::size_t c = 0; c < 8; ++c) point += weights_[place][c] * corners[c];
-          if (!inside || inside->at(point).distance_m < 0.0)
+          if (is_whole || inside->at(point).distance_m < 0.0)
             places.push_back(static_cast<unsigned char>(place));
         }
         if (places.empty()) continue;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -90,19 +91,22 @@ TEST(StudyCases, CloseInOnEachChangeOfVerdict) {
   EXPECT_LT(results.size(), 16u + 30u);
 }
 
-// A verdict that differs in a repeat is undecided, and the range that holds is known less well.
+// A verdict that differs on the finer lattice, and again on the finest, is undecided, and the range that
+// holds is known less well.
 TEST(StudyCases, AreUndecidedWhereARepeatDisagrees) {
   const Workplace place;
   const StudyPlan plan = plan_of(place, small_study);
   const CaseResults results = run_rounds(plan, [](const StudyCase& one) {
     CaseResult result = formula(one);
-    if (one.is_fine && one.tilt_deg == 12.0) result.verdict = Verdict::overhangs;
+    if (one.refinement == 1 && one.tilt_deg == 12.0) result.verdict = Verdict::overhangs;
     if (one.step_division == 2 && one.tilt_deg == 20.0) result.first_spill_s = 2.1;
     return result;
   });
   const StudySummary summary = summarise(plan, results);
   ASSERT_EQ(summary.trust.disagreements.size(), 1u);
-  EXPECT_EQ(summary.trust.disagreements[0].usual, Verdict::holds);
+  EXPECT_EQ(summary.trust.disagreements[0].repeat.refinement, 2);
+  EXPECT_EQ(summary.trust.disagreements[0].usual, Verdict::overhangs);
+  EXPECT_EQ(summary.trust.disagreements[0].repeated, Verdict::holds);
   EXPECT_NEAR(summary.trust.largest_time_change, 0.05, 1e-9);
   const SeriesSummary& series = summary.series[0];
   for (const JudgedTilt& tilt : series.tilts) {
@@ -113,6 +117,36 @@ TEST(StudyCases, AreUndecidedWhereARepeatDisagrees) {
   ASSERT_TRUE(series.holds_deg);
   EXPECT_LE(series.holds_deg->high, 12.0);
   EXPECT_GT(series.uncertainty_deg, 0.5);
+}
+
+// The finest lattice decides where it gives the verdict of the finer one. It is tried only where those before
+// differ: in the verdict, or in the time of first spill by more than a tenth.
+TEST(StudyCases, AreDecidedByTheFinestLattice) {
+  const Workplace place;
+  const StudyPlan plan = plan_of(place, small_study);
+  const CaseResults results = run_rounds(plan, [](const StudyCase& one) {
+    CaseResult result = formula(one);
+    if (one.refinement > 0 && one.tilt_deg == 12.0) result.verdict = Verdict::overhangs;
+    if (one.refinement > 0 && one.tilt_deg == 20.0) result.first_spill_s = 3.0;
+    return result;
+  });
+  const StudySummary summary = summarise(plan, results);
+  EXPECT_TRUE(summary.trust.disagreements.empty());
+  EXPECT_LT(summary.trust.largest_time_change, 0.1);
+  std::vector<double> finest;
+  for (const auto& [key, done] : results) {
+    if (done.study_case.refinement == 2) finest.push_back(done.study_case.tilt_deg);
+  }
+  std::sort(finest.begin(), finest.end());
+  EXPECT_EQ(finest, (std::vector<double>{12.0, 20.0}));
+  for (const JudgedTilt& tilt : summary.series[0].tilts) {
+    if (tilt.tilt_deg == 12.0) {
+      EXPECT_EQ(tilt.verdict, Verdict::overhangs);
+    }
+    if (tilt.tilt_deg == 20.0) {
+      EXPECT_EQ(tilt.result->first_spill_s, 3.0);
+    }
+  }
 }
 
 TEST(StudyCases, ThatCannotBeJudgedAreListed) {
@@ -186,6 +220,33 @@ TEST(CaseCrew, RunsEachCaseOnceWhateverTheNumberOfWorkers) {
   }
   EXPECT_EQ(texts[0], texts[1]);
   EXPECT_EQ(texts[0], texts[2]);
+}
+
+// The rough spoon has the shape of the original, whose result it shares. The other has a shape of its own.
+TEST(CaseCrew, SpoonsOfOneShapeShareTheirResults) {
+  const Workplace place;
+  const auto file = [](const char* name) { return models + name + ".json"; };
+  const StudyPlan plan =
+      make_study_plan({file("spoon-original"), file("spoon-rough"), file("spoon-grip-dent")},
+                      place.write("study.json", liquid_study))
+          .value();
+  EXPECT_EQ(find_first_of_shape(plan, "spoon-rough"), "spoon-original");
+  EXPECT_EQ(find_first_of_shape(plan, "spoon-original"), "spoon-original");
+  EXPECT_EQ(find_first_of_shape(plan, "spoon-grip-dent"), "spoon-grip-dent");
+  std::vector<StudyCase> cases(2);
+  cases[0].spoon = "spoon-rough";
+  cases[1].spoon = "spoon-original";
+  for (StudyCase& one : cases) {
+    one.food = plan.foods.front().name;
+  }
+  std::map<std::string, std::string> results;
+  const auto receive = [&](const StudyCase& one, const CaseResult& result) -> Status {
+    results[one.spoon] = result_to_json(result).dump();
+    return {};
+  };
+  ASSERT_TRUE(run_cases(plan, cases, 1, receive, [] { return false; }));
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results["spoon-rough"], results["spoon-original"]);
 }
 
 TEST(CaseCrew, StopsWhenAskedAndWhenAResultCannotBeKept) {
