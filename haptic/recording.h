@@ -32,6 +32,8 @@
 // all its numbers are zero, as in recordings that were not made live and in recordings older than this field.
 // The hash of the last line is that of the final state.
 //
+// A recording of a training session has "training":{...} in its first line (RecordingHeader::training).
+//
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
 // DeviceSpecification: quiet_force_n, ramp_time_s, maximum_force_rate_n_per_s, maximum_speed_m_per_s,
@@ -62,6 +64,10 @@ inline constexpr std::uint64_t recording_tick_limit = 10'000'000;  // 2 h 46 min
 struct RecordingHeader {
   DeviceSpecification device;
   Document document;  // the scene at tick 0
+  // Training session of the recording: {"task": ..., "spoon": ..., "hand": ..., "severity": ..., "seed":
+  // ...}, with the names of the task and the hand and the spoon's file without ending. Empty for other
+  // sessions. The states of a training session depend on them.
+  std::optional<Json> training = {};
 };
 
 // A command and its tick. The command stays JSON, because the engine interprets commands of the simulation

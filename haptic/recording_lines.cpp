@@ -193,6 +193,7 @@ Json header_to_json(const RecordingHeader& header) {
   json["tick_s"] = tick_s;
   json["device"] = device_to_json(header.device);
   json["document"] = document_to_json(header.document);
+  if (header.training) json["training"] = *header.training;
   return json;
 }
 
@@ -202,11 +203,13 @@ Result<RecordingHeader> header_from_json(const Json& json, const std::string& so
   reader.number("tick_s", {tick_s, tick_s});
   DeviceSpecification device = read_device(reader.inner("device"));
   const Json& document_json = reader.object("document");
+  std::optional<Json> training;
+  if (reader.has("training")) training = reader.object("training");
   reader.finish();
   if (!reader.status().ok()) return reader.status().error();
   auto document = document_from_json(document_json, source + ": document");
   if (!document.ok()) return document.error();
-  return RecordingHeader{std::move(device), std::move(document).value()};
+  return RecordingHeader{std::move(device), std::move(document).value(), std::move(training)};
 }
 
 Json motion_to_json(std::uint64_t tick, const DeviceReading& before,

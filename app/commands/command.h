@@ -41,6 +41,7 @@ CommandEntry add_render(OptionSet root);
 CommandEntry add_rest(OptionSet root);
 CommandEntry add_try(OptionSet root);
 CommandEntry add_study(OptionSet root);
+CommandEntry add_train(OptionSet root);
 // Internal commands that the program runs as child processes; --help does not list them.
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);

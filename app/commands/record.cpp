@@ -167,6 +167,13 @@ Status record_again(const RecordOptions& options, Console& console) {
   const auto recording = read_recording(options.source);
   if (!recording) return recording.error();
   if (!recording->notice.empty()) console.err << "spoonbill: " << one_line(recording->notice) << '\n';
+  if (recording->header.training) {
+    return Error{ErrorCode::unsupported,
+                 options.source.string() +
+                     ": is of a task; use `spoonbill train` with "
+                     "--recording and --rerecord",
+                 "training"};
+  }
   PlaybackDevice device(recording->header.device, recording->readings);
   LockstepInput input;
   input.device = &device;

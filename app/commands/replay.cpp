@@ -247,8 +247,11 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
 }
 
 Status replay_recording(const ReplayOptions& options, const Recording& recording, Console& console) {
-  if (Status checked = check_commands(recording.commands); !checked) return checked;
   const std::string source = options.recording.string();
+  if (recording.header.training) {
+    return Error{ErrorCode::unsupported, source + ": is of a task; `spoonbill train` replays it", "training"};
+  }
+  if (Status checked = check_commands(recording.commands); !checked) return checked;
   auto session = [&] {
     MapProgress maps(console, options.progress);
     return Session::make(recording.header.document, source, recording.header.device, options.instruction_set,

@@ -10,7 +10,7 @@
 #include "app/commands/option_values.h"
 #include "app/files/documents.h"
 #include "app/frames/frame_painter.h"
-#include "app/frames/replay_pictures.h"
+#include "app/frames/session_frames.h"
 #include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
@@ -70,76 +70,16 @@ TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
   return rows;
 }
 
-// Draws the frames of a trial on several threads and writes them. Used by one thread.
-class TrialPictures {
- public:
-  TrialPictures(const TryOptions& options, const Session& session)
-      : options_(options),
-        crew_(options.frames.size.width, options.frames.size.height),
-        writer_(options.out) {
-    Snapshot start;
-    write_snapshot(session, start);
-    const Scene& scene = session.simulation.scene();
-    framing_ = find_framing(scene, start);
-    framing_.box = find_box_of_motions(scene, framing_.box);
-    framing_.lowest_y_m = ground_below(find_box_of_motions(scene, drawn_bounds(start)));
-  }
-
-  // Draws the present state if a frame is due.
-  Status draw(const Trial& trial, Session& session) {
-    find_next_frame(session);
-    const bool is_due =
-        frame_tick(next_frame_) == session.simulation.tick() && next_frame_ % options_.frames.every == 0;
-    return is_due ? paint(trial, session) : Status();
-  }
-
-  // Draws the state at the end, unless it is drawn already, as the frame whose time comes next.
-  Status draw_end(const Trial& trial, Session& session) {
-    find_next_frame(session);
-    return last_painted_ == next_frame_ ? Status() : paint(trial, session);
-  }
-
-  Status finish() {
-    while (crew_.in_flight() > 0) {
-      if (Status written = write_oldest(); !written) return written;
-    }
-    return writer_.finish();
-  }
-
-  int count() const { return count_; }
-
- private:
-  void find_next_frame(const Session& session) {
-    while (frame_tick(next_frame_) < session.simulation.tick()) ++next_frame_;
-  }
-
-  Status paint(const Trial& trial, Session& session) {
-    if (crew_.is_full()) {
-      if (Status written = write_oldest(); !written) return written;
-    }
-    PaintingJob job = make_painting_job(next_frame_, session, framing_, options_.frames.picture_size());
-    job.panel.trial = make_trial_rows(trial, session.simulation);
-    session.flags = tick_flag_none;
-    crew_.start(std::move(job));
-    last_painted_ = next_frame_;
-    return {};
-  }
-
-  Status write_oldest() {
-    auto painted = crew_.receive();
-    if (!painted) return painted.error();
-    ++count_;
-    return writer_.add(static_cast<int>(painted->frame), std::move(painted->picture));
-  }
-
-  const TryOptions& options_;
-  Framing framing_;
-  PaintingCrew crew_;
-  FrameWriter writer_;
-  std::uint64_t next_frame_ = 0;
-  std::optional<std::uint64_t> last_painted_;
-  int count_ = 0;
-};
+std::unique_ptr<SessionFrames> make_frames(const TryOptions& options, const Session& session) {
+  Snapshot start;
+  write_snapshot(session, start);
+  const Scene& scene = session.simulation.scene();
+  Framing framing = find_framing(scene, start);
+  framing.box = find_box_of_motions(scene, framing.box);
+  framing.lowest_y_m = ground_below(find_box_of_motions(scene, drawn_bounds(start)));
+  return std::make_unique<SessionFrames>(options.out, options.frames.picture_size(), options.frames.every,
+                                         framing, session);
+}
 
 // A trial that has ended, because it is over or because the simulation could not hold a body.
 struct EndedTrial {
@@ -148,7 +88,7 @@ struct EndedTrial {
   double elapsed_s = 0.0;  // wall time of all ticks
 };
 
-Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialPictures* pictures,
+Result<EndedTrial> run_trial(const TryOptions& options, Session& session, SessionFrames* pictures,
                              RunLog* log, Console& console) {
   TrialSettings settings;
   settings.seconds = options.seconds.value_or(settings.seconds);
@@ -157,6 +97,9 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
   InterruptWatch interrupt;
   ProgressBar progress(console, "Trying", options.progress);
   const auto expected_ms = static_cast<std::uint64_t>(1e3 * (settings.seconds + settings.longest_settling_s));
+  const auto fill_panel = [&](PanelModel& panel) {
+    panel.trial = make_trial_rows(trial, session.simulation);
+  };
   while (trial.phase() != TrialPhase::done) {
     if (interrupt.requested()) {
       interrupt.answer();
@@ -164,7 +107,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
                    "stopped after " + std::to_string(session.simulation.tick()) + " ticks"};
     }
     if (pictures) {
-      if (Status drawn = pictures->draw(trial, session); !drawn) return drawn.error();
+      if (Status drawn = pictures->draw(session, fill_panel); !drawn) return drawn.error();
     }
     while (const std::optional<Command> command = trial.next_command()) {
       if (Status applied = session.simulation.apply(*command); !applied) return applied.error();
@@ -182,7 +125,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     if (tick % 10 == 0) progress.show(std::min(tick, expected_ms), expected_ms);
   }
   if (pictures) {
-    if (Status drawn = pictures->draw_end(trial, session); !drawn) return drawn.error();
+    if (Status drawn = pictures->draw_end(session, fill_panel); !drawn) return drawn.error();
     if (Status finished = pictures->finish(); !finished) return finished.error();
   }
   if (log) {
@@ -305,11 +248,11 @@ Status try_document(const TryOptions& options, Console& console) {
   session->keeps_documents = false;
   session->reading.position_nm[1] = 10'000'000'000;
   session->reading.buttons = button_hover;
-  std::optional<TrialPictures> pictures;
+  std::unique_ptr<SessionFrames> pictures;
   if (!options.out.empty()) {
     if (Status prepared = prepare_frame_folder(options.out, options.how.replaces_read_only); !prepared)
       return prepared;
-    pictures.emplace(options, session.value());
+    pictures = make_frames(options, session.value());
   }
   std::optional<RunLog> log;
   if (!options.log.empty()) {
@@ -317,8 +260,7 @@ Status try_document(const TryOptions& options, Console& console) {
     if (!created) return created.error();
     log.emplace(std::move(created).value());
   }
-  auto ended =
-      run_trial(options, session.value(), pictures ? &*pictures : nullptr, log ? &*log : nullptr, console);
+  auto ended = run_trial(options, session.value(), pictures.get(), log ? &*log : nullptr, console);
   if (!ended) return ended.error().in(source);
   FactSheet facts;
   facts.add("File", source, "file", source);

@@ -204,7 +204,9 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
-  TickResult result = tick(session.simulation, session.coupling, session.device, reading);
+  TickResult result =
+      session.training ? session.training->tick(session.simulation, session.coupling, session.device, reading)
+                       : tick(session.simulation, session.coupling, session.device, reading);
   session.reading = reading;
   session.saved.reset();
   session.saves_at_tick = 0;

@@ -10,6 +10,7 @@
 
 #include "app/session/edit_history.h"
 #include "app/session/view_choice.h"
+#include "app/training/training.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
@@ -89,6 +90,8 @@ struct Session {
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
+  // Carries the spoon of a training session, instead of the tool; empty in other sessions.
+  std::optional<Training> training = {};
 
   // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
   // progress of feature maps, which distribute the nodes inside a body evenly.

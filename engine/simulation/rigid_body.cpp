@@ -19,11 +19,22 @@ Pose turned_pose(const TurnBody& turn, double time_s, const Pose& start) {
 
 }  // namespace
 
+Pose find_pose_between(const Pose& from, const Pose& to, double fraction) {
+  const double sign = from.orientation.dot(to.orientation) < 0.0 ? -1.0 : 1.0;
+  Pose pose;
+  pose.position_m = from.position_m + fraction * (to.position_m - from.position_m);
+  pose.orientation.coeffs() =
+      (1.0 - fraction) * from.orientation.coeffs() + fraction * sign * to.orientation.coeffs();
+  pose.orientation.normalize();
+  return pose;
+}
+
 void RigidBody::start(std::variant<TurnBody, MotionPath> drive) {
   drive_ = std::move(drive);
   start_ = motion_.end;
   elapsed_s_ = 0.0;
   is_driven_ = true;
+  is_carried_ = false;
 }
 
 void RigidBody::turn(const TurnBody& turn) {
@@ -33,6 +44,15 @@ void RigidBody::turn(const TurnBody& turn) {
 
 void RigidBody::move(const BodyMotion& motion) {
   start(MotionPath(motion));
+}
+
+void RigidBody::carry(const Pose& to, double time_s) {
+  SPOONBILL_ASSERT(time_s > 0.0 && to.position_m.allFinite());
+  start_ = motion_.end;
+  carried_to_ = to;
+  carried_s_ = time_s;
+  elapsed_s_ = 0.0;
+  is_driven_ = is_carried_ = true;
 }
 
 void RigidBody::place(const Pose& pose) {
@@ -53,7 +73,7 @@ void RigidBody::keep_shape(const LatticeMesh& frame) {
 
 void RigidBody::place_hand(const Pose& pose) {
   motion_ = {pose, pose, false};
-  is_driven_ = false;
+  is_driven_ = is_carried_ = false;
 }
 
 bool RigidBody::is_finite() const {
@@ -81,6 +101,14 @@ void RigidBody::shorten_step(double from_s, double to_s) {
 
 void RigidBody::find_step_end() {
   double duration_s = 0.0;
+  if (is_carried_) {
+    // The parts of a tick add up to a tick but for rounding.
+    constexpr double rounding = 1e-9;
+    const double fraction = elapsed_s_ / carried_s_;
+    is_driven_ = fraction < 1.0 - rounding;
+    motion_.end = is_driven_ ? find_pose_between(start_, carried_to_, fraction) : carried_to_;
+    return;
+  }
   if (const auto* const turn = std::get_if<TurnBody>(&drive_)) {
     motion_.end = turned_pose(*turn, elapsed_s_, start_);
     duration_s = turn_duration_s(*turn);

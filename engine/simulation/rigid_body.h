@@ -12,6 +12,10 @@
 
 namespace spoonbill {
 
+// Returns the pose at a fraction of the straight way from one pose to another. Meant for small turns, which
+// are then even without trigonometric functions.
+Pose find_pose_between(const Pose& from, const Pose& to, double fraction);
+
 // A fixed body, which only a TurnBody or MoveBody command moves, or a body that moves with its dynamics:
 // freely, or held by a hand, which these commands move. Its pose maps the rest shape to the present one.
 class RigidBody {
@@ -37,6 +41,8 @@ class RigidBody {
   // that has not ended. move() allocates.
   void turn(const TurnBody& turn);
   void move(const BodyMotion& motion);
+  // Moves the hand straight from its present pose to `to` within the next `time_s`. Allocates nothing.
+  void carry(const Pose& to, double time_s);
   // Ends a motion, and puts the body at rest at `pose`.
   void place(const Pose& pose);
   // Ends a motion, and makes the present pose the rest shape, at rest. `frame` is the body's frame there.
@@ -65,6 +71,11 @@ class RigidBody {
     if (dynamics_) dynamics_->visit_state(visit);
     if (!is_driven()) return;
     visit_pose(start_);
+    if (is_carried_) {
+      visit_pose(carried_to_);
+      const double values[] = {carried_s_, elapsed_s_};
+      return visit(values, 2);
+    }
     if (const auto* const turn = std::get_if<TurnBody>(&drive_)) {
       visit(turn->point_m.data(), 3);
       visit(turn->axis.data(), 3);
@@ -88,6 +99,9 @@ class RigidBody {
   Pose start_;                                // pose at the start of the drive
   double elapsed_s_ = 0.0;
   bool is_driven_ = false;
+  bool is_carried_ = false;  // true if the present drive is to carried_to_ in carried_s_, instead of drive_
+  Pose carried_to_;
+  double carried_s_ = 0.0;
 };
 
 }  // namespace spoonbill

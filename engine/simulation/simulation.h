@@ -30,6 +30,13 @@ inline constexpr int refined_control_point_limit = 1100;
 // See Simulation::is_gone().
 inline constexpr double gone_distance_m = 1.0;
 
+// A rigid body that is held by a hand (Body::hand), and the pose that maps its rest shape to where the hand
+// holds it at the end of a tick.
+struct CarriedBody {
+  int body = 0;  // index in the scene
+  Pose pose;
+};
+
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
@@ -40,6 +47,8 @@ struct ToolInput {
   // True while the hand moves the tool without touching the bodies, as a mouse moves a pointer. The tool does
   // not act until hovering ends and the tool is outside the bodies.
   bool hovering = false;
+  // A body that the hand carries in this tick. It replaces a motion of that body that has not ended.
+  std::optional<CarriedBody> carried = {};
 };
 
 // Response of the bodies to one tick.

@@ -380,6 +380,13 @@ void begin_rigid_steps(Simulation::State& s, double time_s) {
   }
 }
 
+void carry(Simulation::State& s, const CarriedBody& carried) {
+  SPOONBILL_ASSERT(carried.body >= 0 && static_cast<std::size_t>(carried.body) < s.scene.bodies.size());
+  BodyState& body = s.bodies[static_cast<std::size_t>(carried.body)];
+  SPOONBILL_ASSERT(body.rigid && body.rigid->hand());
+  body.rigid->carry(carried.pose, tick_s);
+}
+
 void shorten_rigid_steps(Simulation::State& s, double from_s, double to_s) {
   for (BodyState& body : s.scene_bodies()) {
     if (body.rigid) body.rigid->shorten_step(from_s, to_s);
@@ -436,6 +443,7 @@ Reaction Simulation::advance(const ToolInput& input) {
   }
   clear_report(s);
   find_gone_bodies(s);
+  if (input.carried) carry(s, *input.carried);
   begin_rigid_steps(s, tick_s);
   for (BodyState& body : s.scene_bodies()) {
     if (!body.mesh()) body.mapping().catch_up();
