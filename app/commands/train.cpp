@@ -233,8 +233,10 @@ Status train(const TrainOptions& options, Console& console) {
     if (Status drawn = frames->draw(session.value()); !drawn) return drawn;
   }
   performance->input.after_tick = [&]() -> Status {
+    const bool had_ended = watch.has_ended();
     watch.follow(session->simulation, *session->training, session->coupling.force_n);
-    return frames && !watch.has_ended() ? frames->draw(session.value()) : Status();
+    if (!frames || had_ended) return {};
+    return watch.has_ended() ? frames->draw_end(session.value()) : frames->draw(session.value());
   };
   std::optional<RecordingWriter> writer;
   if (!options.rerecord.empty()) {
@@ -250,7 +252,7 @@ Status train(const TrainOptions& options, Console& console) {
     if (Status committed = writer->commit(); !committed) return committed;
   }
   if (frames) {
-    if (Status drawn = frames->draw_end(session.value()); !drawn) return drawn;
+    if (Status drawn = watch.has_ended() ? Status() : frames->draw_end(session.value()); !drawn) return drawn;
     if (Status finished = frames->finish(); !finished) return finished;
   }
   FactSheet facts;

@@ -63,7 +63,12 @@ TEST(Training, LimitedWristTiltsTheBowl) {
   const Workplace place;
   const std::string made = place.text("again.recording.jsonl");
   const std::vector<std::string> hand = {"--hand", asset("hands/limited-wrist.json")};
-  const Json limited = train("carry", {hand[0], hand[1], "--rerecord", made});
+  const std::string frames = place.text("frames");
+  const Json limited = train(
+      "carry", {hand[0], hand[1], "--rerecord", made, "--out", frames, "--every", "60", "--size", "320x180"});
+  // A frame for each second until the bowl arrives, and one of that moment.
+  EXPECT_EQ(limited["frames"], 4);
+  EXPECT_TRUE(std::filesystem::exists(frames + "/frame-0000.png"));
   EXPECT_GT(limited["largest_tilt_rad"], 0.05);
   EXPECT_GT(limited["largest_force_n"], 1.0);
   constexpr double widest_rad = 8.0 * std::numbers::pi / 180.0;  // 5 degrees and a stop of 3
