@@ -16,7 +16,7 @@ namespace spoonbill {
 class HandFilter {
  public:
   // `start` is the pose of the hand before the first tick: its position and its orientation, whose x axis is
-  // along the handle. `elbow_m` does not move; it must not be above or below any position of the hand.
+  // along the handle. The elbow does not move.
   HandFilter(const HandModel& model, const Vector3& elbow_m, const Pose& start, std::uint32_t seed);
 
   // Returns the pose of the hand in this tick, given the one that the person asks for.

@@ -4,6 +4,7 @@
 
 #include "app/training/exact_angles.h"
 #include "engine/base/file.h"
+#include "engine/base/text.h"
 #include "engine/exchange/field_reader.h"
 
 namespace spoonbill {
@@ -33,8 +34,8 @@ Range<double> read_range(FieldReader& reader, const std::string& field, Range<do
   }
   const Range<double> range{list[0].get<double>(), list[1].get<double>()};
   if (limits.contains(range.low) && limits.contains(range.high) && range.low < range.high) return range;
-  reader.refuse(field, "must be two ascending numbers from " + std::to_string(limits.low) + " to " +
-                           std::to_string(limits.high));
+  reader.refuse(field, "must be two ascending numbers from " + number_text(limits.low) + " to " +
+                           number_text(limits.high));
   return limits;
 }
 

@@ -52,6 +52,9 @@ void SpoonHold::follow(const Simulation& simulation) {
   };
   give_way(Vector3(torque_nm.x(), 0.0, 0.0), torque_.about_nm, torque_.held_about_nm);
   give_way(across_nm, torque_.across_nm, torque_.held_across_nm);
+  // A spoon that is held back far from the hand has a torque by which it would turn round at once.
+  constexpr double largest_turn_rad = 0.1;
+  if (const double angle = turn_rad.norm(); angle > largest_turn_rad) turn_rad *= largest_turn_rad / angle;
   if (!turn_rad.isZero(0.0)) slip_ = (slip_ * turn_by(turn_rad)).normalized();
 }
 

@@ -18,7 +18,7 @@ struct TremorModel {
 
 inline constexpr Range<double> tremor_frequency_range_hz{0.5, 20.0};
 inline constexpr Range<double> tremor_amplitude_range_m{0.0, 0.03};
-inline constexpr Range<double> tremor_turn_range_deg{0.0, 30.0};
+inline constexpr Range<double> tremor_turn_range_deg{0.0, 10.0};
 
 // Displacement and turn (a rotation vector) of a trembling hand.
 struct Sway {

@@ -3,10 +3,16 @@
 #include <cmath>
 
 #include "app/training/exact_angles.h"
-#include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
+
+// Returns the direction of a vector; `otherwise` if the vector is too short to have one.
+Vector3 direction_or(const Vector3& vector, const Vector3& otherwise) {
+  constexpr double shortest = 1e-6;
+  const double length = vector.norm();
+  return length > shortest ? Vector3(vector / length) : otherwise;
+}
 
 double beyond(double excess_rad, double stop_rad) {
   return stop_rad * excess_rad / (excess_rad + stop_rad);
@@ -15,9 +21,9 @@ double beyond(double excess_rad, double stop_rad) {
 }  // namespace
 
 Eigen::Matrix3d find_forearm(const Vector3& elbow_m, const Vector3& hand_m) {
-  const Vector3 along = (hand_m - elbow_m).normalized();
-  const Vector3 across = along.cross(Vector3::UnitY()).normalized();
-  SPOONBILL_ASSERT(along.allFinite() && across.allFinite());
+  const Vector3 along = direction_or(hand_m - elbow_m, Vector3::UnitX());
+  const Vector3 level = direction_or(along.cross(Vector3::UnitY()), Vector3::UnitZ());
+  const Vector3 across = (level - along.dot(level) * along).normalized();
   Eigen::Matrix3d forearm;
   forearm << along, across.cross(along), across;
   return forearm;

@@ -28,7 +28,8 @@ inline constexpr Range<double> wrist_range_deg{-90.0, 90.0};
 inline constexpr Range<double> wrist_stop_range_deg{0.1, 20.0};
 
 // Orientation of the forearm: its x axis along the forearm towards the hand, its y axis as near to the
-// vertical as that allows. The forearm must not be vertical.
+// vertical as that allows. A hand on its elbow has a forearm along x; the z axis of a vertical forearm is
+// that of the scene.
 Eigen::Matrix3d find_forearm(const Vector3& elbow_m, const Vector3& hand_m);
 
 // find_wrist_angles() returns the turns of a hand, whose x axis is along the handle, relative to a forearm;

@@ -157,6 +157,21 @@ TEST(Wrist, HandStaysWithinTheRangeAndItsStop) {
   }
 }
 
+// A hand on its elbow, or above it, has a forearm too, and turns of the wrist within half a turn.
+TEST(Wrist, AnyPlaceOfTheHandHasAForearm) {
+  for (const Vector3& hand_m :
+       {elbow_m, Vector3(elbow_m + Vector3(0.0, 0.3, 0.0)), Vector3(elbow_m - Vector3(0.0, 0.3, 0.0))}) {
+    const Eigen::Matrix3d forearm = find_forearm(elbow_m, hand_m);
+    EXPECT_LT((forearm.transpose() * forearm - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    for (const double turn : {0.0, 0.5 * std::numbers::pi}) {
+      const Quaternion hand = turn_about_axis(Vector3::UnitZ(), turn);
+      for (const double angle : find_wrist_angles(forearm, hand.toRotationMatrix())) {
+        EXPECT_LE(std::abs(angle), std::numbers::pi);
+      }
+    }
+  }
+}
+
 TEST(SlowHand, IsNoFasterThanItsModelAndArrives) {
   HandModel hand;
   hand.speed = HandSpeed{0.1, 0.5};
