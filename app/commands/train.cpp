@@ -279,14 +279,14 @@ CommandEntry add_train(OptionSet root) {
   const OptionSet parser =
       root.add_command("train", "Do a task with a spoon and a modelled hand, and score it");
   parser.set_footer(
-      "Food lies on a spoon in a hand. A recording or a script says where the bowl shall go; the hand "
-      "follows\n"
-      "as its model lets it: within the range of its wrist, as fast as it can, trembling, with its grip. "
-      "The\n"
-      "same recording can be tried with any spoon and any hand. With those it was made with, its states are\n"
-      "verified up to its end; otherwise the run ends with the task.\n"
-      "A task succeeds when the bowl reaches the mouth (carry), is held level (level), or the food has slid\n"
-      "off inside the mouth (eat), and nothing was lost over the rim. Exit code 0, also if it fails.\n"
+      "Food lies on a spoon in a hand, or in a dish. A recording or a script says where the bowl shall go;\n"
+      "the hand follows as its model lets it: within the range of its wrist, as fast as it can, trembling,\n"
+      "with its grip. The same recording can be tried with any spoon and any hand. With those it was made\n"
+      "with, its states are verified up to its end; otherwise the run ends with the task.\n"
+      "A task succeeds when the food is lifted out of the dish (scoop), the bowl reaches the mouth (carry),\n"
+      "is held level (level), or the food has slid off inside the mouth (eat), and nothing was lost over "
+      "the\n"
+      "rim. Exit code 0, also if it fails.\n"
       "Example: spoonbill train assets/tasks/carry.json --hand assets/hands/limited-wrist.json\n"
       "             --recording assets/recordings/carry.recording.jsonl");
   parser.add_option("TASK", options->task, "Task (.json)").require();

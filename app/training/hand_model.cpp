@@ -15,7 +15,7 @@ constexpr std::size_t hand_file_limit_bytes = std::size_t{1} << 16;
 
 // An unimpaired hand. Ranges of the wrist: usual clinical norms of active motion (American Academy of
 // Orthopaedic Surgeons 1965): bend to either side 70 and 80 degrees, ulnar 30 and radial deviation 20,
-// rotation 80 to either side. Grip: 231 N on a handle of 38 mm (Edgren et al. 2004).
+// rotation 80 to either side. Grip: 231 N on a cylinder of 38.1 mm (PMC3855544).
 constexpr std::array<Range<double>, wrist_turn_count> unimpaired_range_deg{
     {{-80.0, 70.0}, {-30.0, 20.0}, {-80.0, 80.0}}};
 constexpr HandSpeed unimpaired_speed{};
