@@ -1,8 +1,6 @@
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,9 +9,9 @@
 #include "app/commands/option_set.h"
 #include "app/frames/session_frames.h"
 #include "app/report/fact_sheet.h"
-#include "app/report/quantity_text.h"
+#include "app/report/task_facts.h"
 #include "app/session/lockstep.h"
-#include "app/training/task_watch.h"
+#include "app/session/training_session.h"
 #include "haptic/recording_lines.h"
 #include "haptic/script.h"
 #include "haptic/virtual_device.h"
@@ -90,89 +88,11 @@ Status start_device(const TrainOptions& options, const Json& identity, Performan
   return {};
 }
 
-void add_wrist(FactSheet& facts, const TaskResult& result, const HandModel& hand) {
-  Json wrist = Json::object();
-  for (std::size_t k = 0; k < wrist_turn_count; ++k) {
-    const Range<double>& used = result.wrist_rad[k];
-    wrist[wrist_turn_names[k]] = {used.low, used.high};
-    constexpr double degrees = 180.0 / std::numbers::pi;
-    std::string text =
-        decimals_text(degrees * used.low, 1) + " to " + decimals_text(degrees * used.high, 1) + "°";
-    if (hand.wrist) {
-      const Range<double>& range = hand.wrist->range_rad[k];
-      text += " of " + decimals_text(degrees * range.low, 1) + " to " +
-              decimals_text(degrees * range.high, 1) + "°";
-    }
-    facts.add("Wrist " + std::string(wrist_turn_names[k]), text, "", nullptr);
-  }
-  facts.add("", "", "wrist_rad", wrist);
-}
-
-void add_result(FactSheet& facts, const Task& task, const HandModel& hand, const TaskResult& result) {
-  const bool success = result.end == TaskEnd::success;
-  facts.add("Success",
-            success ? "yes" : "no, " + std::string(task_end_names[static_cast<std::size_t>(result.end)]),
-            "success", success);
-  facts.add("", "", "end", task_end_names[static_cast<std::size_t>(result.end)]);
-  facts.add("Time", decimals_text(result.time_s, 2) + " s", "time_s", result.time_s);
-  facts.add("Food lost", percent_text(result.food_lost_fraction), "food_lost_fraction",
-            result.food_lost_fraction);
-  facts.add("Score", decimals_text(result.score(task), 1), "score", result.score(task));
-  facts.add("Path", short_length_text(result.path_m), "path_m", result.path_m);
-  facts.add("Smoothness", decimals_text(result.smoothness, 2) + " (spectral arc length)", "smoothness",
-            result.smoothness);
-  facts.add("Tremor", short_length_text(result.tremor_m), "tremor_m", result.tremor_m);
-  facts.add("Largest tilt", decimals_text(result.largest_tilt_rad * 180.0 / std::numbers::pi, 1) + "°",
-            "largest_tilt_rad", result.largest_tilt_rad);
-  add_wrist(facts, result, hand);
-  if (hand.grip) {
-    facts.add("Grip", percent_text(result.grip_used) + " of what it holds", "grip_used", result.grip_used);
-    facts.add("Turned in hand", decimals_text(result.turned_in_hand_rad * 180.0 / std::numbers::pi, 1) + "°",
-              "turned_in_hand_rad", result.turned_in_hand_rad);
-  }
-  facts.add("Largest force", newtons_text(result.largest_force_n), "largest_force_n", result.largest_force_n);
-}
-
-// The task, the spoon and the hand of a training session, from their files.
-struct Setting {
-  Task task;
-  HandModel hand;
-  TrainingScene scene;
-  Json identity;  // as in RecordingHeader::training
-};
-
 // Returns the document of the spoon: the one that is named, or the model of a script; empty for that of the
 // task.
 std::filesystem::path find_spoon(const TrainOptions& options, const Performance& performance) {
   if (!options.spoon.empty() || !performance.script) return options.spoon;
   return performance.script->model_file;
-}
-
-Result<Setting> read_setting(const TrainOptions& options, const std::filesystem::path& spoon) {
-  auto task = read_task(options.task);
-  if (!task) return task.error();
-  Setting setting;
-  setting.task = std::move(task).value();
-  if (!options.hand.empty()) {
-    auto hand = read_hand(options.hand, options.severity);
-    if (!hand) return hand.error();
-    setting.hand = std::move(hand).value();
-  }
-  auto scene = make_training_scene(setting.task, spoon);
-  if (!scene) return scene.error();
-  setting.scene = std::move(scene).value();
-  setting.identity = {{"task", setting.task.name},
-                      {"spoon", (spoon.empty() ? setting.task.spoon : spoon).stem().string()},
-                      {"hand", setting.hand.name},
-                      {"severity", setting.hand.severity},
-                      {"seed", options.seed}};
-  return setting;
-}
-
-// Returns the view of a task's document. The hand of the scene is far away, and the food hides nothing.
-Json task_view() {
-  return {{"camera", {{"yaw_deg", 25}, {"pitch_deg", 22}}},
-          {"overlays", {{"tool", false}, {"touched_nodes", false}, {"force", false}}}};
 }
 
 // Returns frames in which the spoon is seen at the start and at the mouth.
@@ -210,21 +130,17 @@ Status train(const TrainOptions& options, Console& console) {
   }
   auto performance = options.script.empty() ? read_recording_of_task(options) : read_script_of_task(options);
   if (!performance) return performance.error();
-  auto setting = read_setting(options, find_spoon(options, performance.value()));
+  auto setting = read_training_setting({options.task, find_spoon(options, performance.value()), options.hand,
+                                        options.severity, static_cast<std::uint32_t>(options.seed)});
   if (!setting) return setting.error();
   if (Status started = start_device(options, setting->identity, performance.value()); !started)
     return started;
 
-  const Document document{setting->task.name, setting->scene.scene, task_view()};
   const DeviceSpecification device = performance->device->specification();
-  auto session = Session::make(document, options.task.string(), device, options.instruction_set);
+  auto session =
+      make_training_session(setting.value(), options.task.string(), device, options.instruction_set);
   if (!session) return session.error();
-  if (Status laid = Training::lay_food(session->simulation); !laid)
-    return laid.error().in(options.task.string());
-  session->keeps_documents = false;
-  session->training.emplace(setting->scene, setting->hand, setting->task.elbow_m,
-                            static_cast<std::uint32_t>(options.seed));
-  TaskWatch watch(setting->task, setting->scene, session->simulation);
+  const TaskWatch& watch = *session->watch;
   std::unique_ptr<SessionFrames> frames;
   if (!options.out.empty()) {
     if (Status prepared = prepare_frame_folder(options.out, options.how.replaces_read_only); !prepared)
@@ -232,16 +148,16 @@ Status train(const TrainOptions& options, Console& console) {
     frames = make_frames(options, setting->task, session.value());
     if (Status drawn = frames->draw(session.value()); !drawn) return drawn;
   }
+  bool had_ended = false;
   performance->input.after_tick = [&]() -> Status {
-    const bool had_ended = watch.has_ended();
-    watch.follow(session->simulation, *session->training, session->coupling.force_n);
     if (!frames || had_ended) return {};
-    return watch.has_ended() ? frames->draw_end(session.value()) : frames->draw(session.value());
+    had_ended = watch.has_ended();
+    return had_ended ? frames->draw_end(session.value()) : frames->draw(session.value());
   };
   std::optional<RecordingWriter> writer;
   if (!options.rerecord.empty()) {
-    auto created =
-        RecordingWriter::create(options.rerecord, {device, document, setting->identity}, options.how);
+    auto created = RecordingWriter::create(options.rerecord, {device, setting->document(), setting->identity},
+                                           options.how);
     if (!created) return created.error();
     writer.emplace(std::move(created).value());
   }
@@ -260,7 +176,7 @@ Status train(const TrainOptions& options, Console& console) {
   facts.add("Spoon", setting->identity["spoon"].get<std::string>(), "spoon", setting->identity["spoon"]);
   facts.add("Hand", setting->hand.name.empty() ? "not modelled" : setting->hand.name, "hand",
             setting->hand.name);
-  add_result(facts, setting->task, setting->hand, watch.result());
+  add_task_result(setting->task, setting->hand, watch.result(), facts);
   if (frames) {
     facts.add("Frames", std::to_string(frames->count()), "frames", frames->count());
     facts.add("Folder", options.out.string(), "out", options.out.string());

@@ -207,6 +207,7 @@ TickResult advance(Session& session, const DeviceReading& reading) {
   TickResult result =
       session.training ? session.training->tick(session.simulation, session.coupling, session.device, reading)
                        : tick(session.simulation, session.coupling, session.device, reading);
+  if (session.watch) session.watch->follow(session.simulation, *session.training, result.force_n);
   session.reading = reading;
   session.saved.reset();
   session.saves_at_tick = 0;

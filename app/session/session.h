@@ -10,6 +10,7 @@
 
 #include "app/session/edit_history.h"
 #include "app/session/view_choice.h"
+#include "app/training/task_watch.h"
 #include "app/training/training.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
@@ -92,6 +93,8 @@ struct Session {
   bool force_on = true;           // false while the user has switched the device's force off
   // Carries the spoon of a training session, instead of the tool; empty in other sessions.
   std::optional<Training> training = {};
+  // Follows the task of a training session.
+  std::optional<TaskWatch> watch = {};
 
   // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
   // progress of feature maps, which distribute the nodes inside a body evenly.

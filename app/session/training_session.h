@@ -1,0 +1,45 @@
+// A training session before its first tick, from the files that a person chooses.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "app/session/session.h"
+#include "app/training/hand_model.h"
+#include "app/training/task.h"
+#include "app/training/training_scene.h"
+#include "engine/base/result.h"
+#include "engine/exchange/document.h"
+
+namespace spoonbill {
+
+// Files and settings of a training session. Plain data; an empty path is the default.
+struct TrainingChoice {
+  std::filesystem::path task;
+  std::filesystem::path spoon;     // default: that of the task
+  std::filesystem::path hand;      // default: one that does all that is asked
+  std::optional<double> severity;  // default: that of the hand's file
+  std::uint32_t seed = 1;          // selects the tremor
+};
+
+// A task, a spoon and a hand, as they are simulated. Plain data.
+struct TrainingSetting {
+  Task task;
+  HandModel hand;
+  TrainingScene scene;
+  std::uint32_t seed = 1;
+  Json identity;  // as in RecordingHeader::training
+
+  // Returns the document that a recording of the session has, with a view of all of the task.
+  Document document() const;
+};
+
+// Reads the files. Errors are those of read_task(), read_hand() and make_training_scene().
+Result<TrainingSetting> read_training_setting(const TrainingChoice& choice);
+
+// Makes the session, with the food laid and a watch of the task. `source` names the task's file in messages.
+Result<Session> make_training_session(const TrainingSetting& setting, const std::string& source,
+                                      const DeviceSpecification& device, InstructionSet set);
+
+}  // namespace spoonbill
