@@ -12,11 +12,11 @@ constexpr double coincident_m = 1e-9;
 // Smallest area of a usable rim, as a fraction of its squared length.
 constexpr double least_area_fraction = 1e-4;
 
-// Returns points along the line; neighbours are further apart than coincident_m.
-std::vector<Vector3> sample_line(const Surface& surface, const std::vector<Vector2>& corners) {
+// Writes points along the line; neighbours are further apart than coincident_m.
+void sample_line(const Surface& surface, const std::vector<Vector2>& corners, std::vector<Vector3>& points) {
   const int steps = std::max(1, point_count / static_cast<int>(corners.size()));
   const auto at = [&](const Vector2& corner) { return position(surface, corner.x(), corner.y()); };
-  std::vector<Vector3> points;
+  points.clear();
   points.reserve(static_cast<std::size_t>(steps) * corners.size());
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const Vector2 &from = corners[k], &to = corners[(k + 1) % corners.size()];
@@ -27,36 +27,44 @@ std::vector<Vector3> sample_line(const Surface& surface, const std::vector<Vecto
     }
   }
   while (points.size() > 1 && (points.front() - points.back()).norm() <= coincident_m) points.pop_back();
-  return points;
 }
 
 }  // namespace
 
 std::optional<Rim> Rim::on_surface(const Surface& surface, const std::vector<Vector2>& corners,
                                    const Vector3& up) {
-  const std::vector<Vector3> points = sample_line(surface, corners);
   Rim rim;
+  if (!rim.follow(surface, corners, up)) return std::nullopt;
+  return rim;
+}
+
+bool Rim::follow(const Surface& surface, const std::vector<Vector2>& corners, const Vector3& up) {
+  sample_line(surface, corners, points_m_);
   double length = 0.0;
   Vector3 area = Vector3::Zero();
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Vector3 &a = points[k], &b = points[(k + 1) % points.size()];
+  centre_m_.setZero();
+  for (std::size_t k = 0; k < points_m_.size(); ++k) {
+    const Vector3 &a = points_m_[k], &b = points_m_[(k + 1) % points_m_.size()];
     const double chord = (b - a).norm();
     length += chord;
-    rim.centre_m_ += chord * 0.5 * (a + b);
-    area += 0.5 * (a - points.front()).cross(b - points.front());
+    centre_m_ += chord * 0.5 * (a + b);
+    area += 0.5 * (a - points_m_.front()).cross(b - points_m_.front());
   }
-  if (!(area.norm() > least_area_fraction * length * length)) return std::nullopt;
-  rim.centre_m_ /= length;
-  rim.normal_ = area.normalized();
-  if (rim.normal_.dot(up) < 0.0) rim.normal_ = -rim.normal_;
-  const Vector3 first = points.front() - rim.centre_m_;
-  const Vector3 level = first - rim.normal_.dot(first) * rim.normal_;
-  rim.across_ = level.norm() > coincident_m ? Vector3(level.normalized()) : rim.normal_.unitOrthogonal();
-  rim.along_ = rim.normal_.cross(rim.across_);
-  for (const Vector3& point : points) rim.outline_m_.push_back(rim.projected(point));
-  rim.box_m_ = box_about(rim.outline_m_);
-  rim.inner_radius_m_ = std::max(0.0, rim.margin_m(rim.centre_m_));
-  return rim;
+  if (!(area.norm() > least_area_fraction * length * length)) return false;
+  centre_m_ /= length;
+  normal_ = area.normalized();
+  if (normal_.dot(up) < 0.0) normal_ = -normal_;
+  const Vector3 first = points_m_.front() - centre_m_;
+  const Vector3 level = first - normal_.dot(first) * normal_;
+  across_ = level.norm() > coincident_m ? Vector3(level.normalized()) : normal_.unitOrthogonal();
+  along_ = normal_.cross(across_);
+  outline_m_.clear();
+  outline_m_.reserve(points_m_.size());
+  for (const Vector3& point : points_m_) outline_m_.push_back(projected(point));
+  box_m_ = box_about(outline_m_);
+  inner_radius_m_ = 0.0;
+  inner_radius_m_ = std::max(0.0, margin_m(centre_m_));
+  return true;
 }
 
 bool Rim::is_outside(const Vector3& point_m) const {

@@ -19,6 +19,10 @@ class Rim {
   static std::optional<Rim> on_surface(const Surface& surface, const std::vector<Vector2>& corners,
                                        const Vector3& up);
 
+  // Moves the rim to where the line is on the surface now. Returns false, and leaves the rim unusable, if the
+  // line encloses no area. Allocates nothing if the line has as many corners as before.
+  bool follow(const Surface& surface, const std::vector<Vector2>& corners, const Vector3& up);
+
   const Vector3& normal() const { return normal_; }
   const Vector3& centre_m() const { return centre_m_; }
   // Returns the height of a point above the plane of the rim, which goes through its centre, m.
@@ -39,6 +43,7 @@ class Rim {
 
   Vector3 centre_m_ = Vector3::Zero(), normal_ = Vector3::UnitY(), across_ = Vector3::UnitX(),
           along_ = Vector3::UnitZ();
+  std::vector<Vector3> points_m_;  // on the line; neighbours are apart
   std::vector<Vector2> outline_m_;
   Box2 box_m_;                   // around the outline
   double inner_radius_m_ = 0.0;  // of a circle around the centre that is inside the outline

@@ -97,12 +97,16 @@ void SpillWatch::follow(const Simulation& simulation, double time_s, bool now) {
 
 void SpillWatch::measure(const Simulation& simulation, double time_s) {
   const Surface& surface = simulation.surface(bearer_);
-  const auto rim =
-      Rim::on_surface(surface, simulation.scene().bodies[static_cast<std::size_t>(bearer_)].rim, normal_);
-  if (!rim) return;
+  const std::vector<Vector2>& corners = simulation.scene().bodies[static_cast<std::size_t>(bearer_)].rim;
+  if (!rim_) {
+    rim_ = Rim::on_surface(surface, corners, normal_);
+  } else if (!rim_->follow(surface, corners, normal_)) {
+    rim_.reset();
+  }
+  if (!rim_) return;
   // The normal keeps its side while the body turns, even beyond a right angle.
-  normal_ = rim->normal();
-  const Border border{*rim, up_, normal_.dot(up_) > least_upright, find_lowest_m(surface, up_)};
+  normal_ = rim_->normal();
+  const Border border{*rim_, up_, normal_.dot(up_) > least_upright, find_lowest_m(surface, up_)};
   for (std::size_t b = 0; b < spills_.size(); ++b) {
     if (!is_watched_[b]) continue;
     const int body = static_cast<int>(b);
@@ -116,9 +120,9 @@ void SpillWatch::measure(const Simulation& simulation, double time_s) {
     if (!spills_[b] && !is_borne) continue;
     if (!spills_[b]) spills_[b] = Spill();
     Spill& spill = *spills_[b];
-    spill.margin_m = rim->margin_m(centre);
+    spill.margin_m = rim_->margin_m(centre);
     if (rigid) {
-      spill.outside_m = is_out ? rim->from_centre_m(centre) : Vector2::Zero();
+      spill.outside_m = is_out ? rim_->from_centre_m(centre) : Vector2::Zero();
       spill.outside_fraction = is_out ? 1.0 : 0.0;
       spill.spilled_fraction = is_out && border.is_below(centre) ? 1.0 : 0.0;
     } else {

@@ -33,7 +33,7 @@ struct Spill {
 // Watches the free bodies of a trial and the rim of the body that bears them: the trial's turned body or, if
 // that has no rim, the first other body with a rim, but not the lowered one. A body is watched from when its
 // centre of mass is inside the rim and above the lowest point of that body. Has one owner, which calls
-// follow() after each tick. Allocates.
+// follow() after each tick. Allocates only when it measures for the first time.
 class SpillWatch {
  public:
   explicit SpillWatch(const Scene& scene);
@@ -49,6 +49,7 @@ class SpillWatch {
 
   int bearer_ = -1;  // -1: no body has a rim
   Vector3 up_ = Vector3::UnitY(), normal_ = Vector3::UnitY();
+  std::optional<Rim> rim_;        // empty until first needed
   std::vector<bool> is_watched_;  // by body
   std::vector<std::optional<Spill>> spills_;
   std::vector<std::optional<MassPoints>> points_;  // by body; empty until first needed
