@@ -23,7 +23,7 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
       {"Look at a model", {add_info, add_render, add_check, add_sample, add_collide}},
       {"Exchange with other programs", {add_convert}},
       {"Sculpt", {add_edit, add_record, add_replay}},
-      {"Try a model", {add_try, add_rest, add_study, add_train}},
+      {"Try a model", {add_try, add_rest, add_study, add_train, add_compare}},
       // Hidden commands, which the program itself runs as child processes.
       {"", {add_read_mesh, add_read_points}},
   };

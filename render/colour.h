@@ -41,6 +41,8 @@ inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};
 inline constexpr Colour tangent_u{0, 118, 196};  // drawn as an arrow with a label
 inline constexpr Colour tangent_v{0, 132, 104};
+inline constexpr Colour goal{0, 110, 150};  // drawn as thick rings and dashed paths
+inline constexpr Colour reached_goal{22, 122, 70};
 inline constexpr Colour text{38, 43, 50};
 
 }  // namespace palette

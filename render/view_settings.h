@@ -2,9 +2,11 @@
 // change the simulation.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/geometry.h"
 #include "engine/collision/stages/contact_stages.h"
@@ -35,6 +37,21 @@ struct Overlays {
   int sphere_level = 0;  // level of the spheres: 0, the coarsest, to finest_stage_level
 };
 
+// The goal of a task, in the scene. Plain data; lengths in metres, in the world.
+struct GoalMarks {
+  // A circle around a place to reach.
+  struct Ring {
+    Vector3 centre_m = Vector3::Zero();
+    Vector3 normal = Vector3::UnitX();  // unit vector
+    double radius_m = 0.0;
+  };
+  std::vector<Ring> rings;
+  std::vector<std::vector<Vector3>> paths_m;  // corners of each path, from its start
+  std::vector<std::array<Vector3, 2>> lines;  // ends of reference lines, such as the level
+  std::vector<Vector3> points_m;              // marked points
+  bool is_reached = false;                    // true once the task has succeeded
+};
+
 struct ViewSettings {
   Camera camera;
   Rectangle panel_px;            // area covered by the panel at the left or right edge; empty without a panel
@@ -42,6 +59,7 @@ struct ViewSettings {
 
   Overlays overlays;
   std::shared_ptr<const ContactStages> stages;  // contact stages of the snapshot; null draws none
+  std::shared_ptr<const GoalMarks> goal;        // goal of a task; null draws none
   bool see_through_body = false;                // draws the body as a ghost, so that inner nodes are visible
   // Returns whether fixed nodes have marks, instead of a tint of the skin.
   bool marks_fixed_nodes() const { return overlays.fixed_nodes && (overlays.lattice || see_through_body); }

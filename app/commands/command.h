@@ -42,6 +42,7 @@ CommandEntry add_rest(OptionSet root);
 CommandEntry add_try(OptionSet root);
 CommandEntry add_study(OptionSet root);
 CommandEntry add_train(OptionSet root);
+CommandEntry add_compare(OptionSet root);
 // Internal commands that the program runs as child processes; --help does not list them.
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);

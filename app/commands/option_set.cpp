@@ -123,6 +123,10 @@ CommandOption OptionSet::add_option(const std::string& name, std::uint64_t& valu
                                     const std::string& help) const {
   return CommandOption(parser_->add_option(name, value, help));
 }
+CommandOption OptionSet::add_option(const std::string& name, std::optional<int>& value,
+                                    const std::string& help) const {
+  return CommandOption(parser_->add_option(name, value, help));
+}
 CommandOption OptionSet::add_option(const std::string& name, std::optional<double>& value,
                                     const std::string& help) const {
   return CommandOption(parser_->add_option(name, value, help));

@@ -71,6 +71,7 @@ class OptionSet {
                            const std::string& help) const;
   CommandOption add_option(const std::string& name, int& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::uint64_t& value, const std::string& help) const;
+  CommandOption add_option(const std::string& name, std::optional<int>& value, const std::string& help) const;
   CommandOption add_option(const std::string& name, std::optional<double>& value,
                            const std::string& help) const;
   // Calls `parse` with the text of an option that may be given once.

@@ -113,7 +113,11 @@ void FrameLog::add(const ShownFrame& shown) {
                      {"answers_px", shown.answers_px},
                      {"pointer_x_px", shown.pointer_x_px},
                      {"pointer_y_px", shown.pointer_y_px},
-                     {"hand_lag_m", shown.hand_lag_m}};
+                     {"hand_lag_m", shown.hand_lag_m},
+                     {"stage", shown.stage},
+                     {"missed", shown.missed},
+                     {"end", shown.end},
+                     {"wanted_m", {shown.wanted_m.x(), shown.wanted_m.y(), shown.wanted_m.z()}}};
   out_ << line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" << std::flush;
 }
 

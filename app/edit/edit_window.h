@@ -80,6 +80,11 @@ struct ShownFrame {
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;
   double hand_lag_m = 0.0;  // distance between the device and the position that the mouse sets
+  // Stage of a training window: "preparing", "ready", "running" or "ended"; empty in the editor.
+  std::string stage;
+  std::uint64_t missed = 0;            // ticks that an attempt has missed
+  std::string end;                     // name of the TaskEnd, empty in the editor
+  Vector3 wanted_m = Vector3::Zero();  // position of the bowl or the finger that the person wants
 };
 
 // Log of the frames shown, one JSON object per line. `spoonbill edit` writes it if the environment contains

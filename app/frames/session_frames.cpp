@@ -3,8 +3,19 @@
 #include <utility>
 
 #include "app/session/lockstep.h"
+#include "app/session/task_goal.h"
 
 namespace spoonbill {
+
+Framing find_task_framing(const Task& task, const Session& session) {
+  Snapshot start;
+  write_snapshot(session, start);
+  Framing framing = find_framing(session.simulation.scene(), start);
+  const Box box = framing.box;
+  for (const int c : {0, 7}) framing.box.include(box.corner(c) + task.mouth_m);
+  if (session.view.goal) framing.box.join(find_bounds(*session.view.goal));
+  return framing;
+}
 
 SessionFrames::SessionFrames(const std::filesystem::path& folder, const PictureSize& size,
                              std::uint64_t every, const Framing& framing, const Session& session)

@@ -13,6 +13,10 @@
 
 namespace spoonbill {
 
+// Returns the framing of a training session: the bodies where they are and, with a spoon, at the mouth, and
+// the goal.
+Framing find_task_framing(const Task& task, const Session& session);
+
 // Draws frames on several threads and writes them into a folder (prepare_frame_folder()). Frame k shows the
 // state frame_tick(k) ticks after this object was made. Used by one thread.
 class SessionFrames {

@@ -164,6 +164,9 @@ class HapticSide {
   // not abandon the tick at the same point.
   void tick(const LoopTick& tick) noexcept;
 
+  // Starts a recording with the first tick. Must be called before the thread starts.
+  void begin_recording(std::unique_ptr<RecordingWriter> recording) { start_recording(std::move(recording)); }
+
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
   // last changes to the journal. Must be called only after the thread has stopped.
   void close();

@@ -86,22 +86,35 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   SPOONBILL_ASSERT(device != nullptr);
   const DeviceSpecification& specification = device->specification();
   if (Status checked = check_specification(specification); !checked) return checked.error();
+  auto session = make_session(document, source, specification, settings.instruction_set);
+  if (!session) return session.error();
+  const std::string limit = limit_real_time(session.value()->simulation);
+  auto live = start(std::move(session).value(), settings, std::move(device));
+  if (live && !limit.empty()) live.value()->notices_.add(Notice::Kind::problem, limit);
+  return live;
+}
+
+Result<std::unique_ptr<LiveSession>> LiveSession::start(std::unique_ptr<Session> session,
+                                                        const LiveSettings& settings,
+                                                        std::unique_ptr<Device> device,
+                                                        std::unique_ptr<RecordingWriter> recording) {
+  SPOONBILL_ASSERT(session != nullptr && device != nullptr);
+  const DeviceSpecification& specification = device->specification();
+  if (Status checked = check_specification(specification); !checked) return checked.error();
   const std::optional<DeviceReading> reading = device->read();
   if (!reading || !reading->is_valid()) {
     return Error{ErrorCode::unreadable, "device " + specification.name + ": does not answer"};
   }
-  auto session = make_session(document, source, specification, settings.instruction_set);
-  if (!session) return session.error();
-  Session& made = *session.value();
+  Session& made = *session;
   made.reading = *reading;
-  const std::string limit = limit_real_time(made.simulation);
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
   const std::vector<std::string> notes = made.simulation.warnings();
   const LiveScene first_scene{made.title, make_session_document(made).scene};
   std::unique_ptr<LiveSession> live(
-      new LiveSession(std::move(session).value(), std::move(device), settings, first, first_scene));
+      new LiveSession(std::move(session), std::move(device), settings, first, first_scene));
+  if (recording) live->haptic_.begin_recording(std::move(recording));
   LoopSettings loop_settings;
   loop_settings.real_time = settings.real_time;
   auto loop =
@@ -113,7 +126,6 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
     live->notices_.add(Notice::Kind::information, notice);
   }
-  if (!limit.empty()) live->notices_.add(Notice::Kind::problem, limit);
   for (const std::string& note : notes) live->notices_.add(Notice::Kind::problem, note);
   return live;
 }

@@ -31,6 +31,13 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
                                                     const LiveSettings& settings,
                                                     std::unique_ptr<Device> device);
+  // Starts a session that is made already, such as one of training, with the reading that the device gives
+  // now. Its first tick is the first of `recording`, unless that is null. Errors of the device and of threads
+  // are those above.
+  static Result<std::unique_ptr<LiveSession>> start(std::unique_ptr<Session> session,
+                                                    const LiveSettings& settings,
+                                                    std::unique_ptr<Device> device,
+                                                    std::unique_ptr<RecordingWriter> recording = nullptr);
   ~LiveSession();  // waits for all pending writes, then stops the threads
 
   // Queues a request. Requests are applied in order before the next tick. Returns false if the queue is full
@@ -78,11 +85,13 @@ class LiveSession {
   LoopFigures figures() const { return loop_->figures(); }
 
   // Ends the haptic thread and a recording, and waits until everything is written. Afterwards only figures(),
-  // consume_notices(), is_last_recording_complete() and last_recording() may be called.
+  // consume_notices(), is_last_recording_complete(), last_recording() and session() may be called.
   void stop();
   // Returns true if the last recording was written to its end.
   bool is_last_recording_complete() const { return journal_.is_last_recording_complete(); }
   RecordedTicks last_recording() const { return journal_.last_recording(); }
+  // Returns the session after stop(); null if the worker had it.
+  const Session* session() const { return haptic_.session(); }
 
  private:
   LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device, const LiveSettings& settings,

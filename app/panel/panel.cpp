@@ -67,7 +67,7 @@ void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer
   std::string time = rounded_text(model.time_s, 2, " s");
   if (!model.rate_is_nominal) time += ", " + percent_text(tick_s * model.rate_hz) + " of real time";
   ImGui::TextColored(colour::quiet_ink, "%s", time.c_str());
-  if (model.trial) return;
+  if (model.trial || model.task) return;
 
   const ImGuiStyle& style = ImGui::GetStyle();
   const auto width = [&](const char* name) {
@@ -334,6 +334,34 @@ void draw_trial(const PanelModel& model, const TrialRows& trial, const Theme& th
   draw_flags(model);
 }
 
+void draw_task_rows(const char* heading, const std::vector<TaskRows::Row>& rows, const Theme& theme) {
+  if (rows.empty()) return;
+  const RowGroup group(heading, theme);
+  if (!group) return;
+  for (const TaskRows::Row& row : rows) {
+    if (row.fraction) {
+      gauge_row(row.name.c_str(), *row.fraction, row.text);
+    } else {
+      fact_row(row.name.c_str(), row.text);
+    }
+  }
+}
+
+void draw_task(const PanelModel& model, const TaskRows& task, const Theme& theme) {
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(task.note.c_str());
+  ImGui::PopTextWrapPos();
+  draw_task_rows("Task", task.goal, theme);
+  draw_task_rows("Spoon", task.spoon, theme);
+  draw_task_rows(("Hand: " + task.hand_name).c_str(), task.hand, theme);
+  const double fraction = model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0;
+  const std::string text = rounded_text(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n);
+  draw_task_rows(("Device: " + model.device).c_str(), {{"Force", text, fraction}}, theme);
+  ImGui::PushTextWrapPos(0.0F);
+  if (!model.safety_text.empty()) ImGui::TextColored(colour::warning, "%s", model.safety_text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 double panel_scale(int height_px) {
@@ -364,6 +392,8 @@ PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectan
   draw_title(model, theme, answer);
   if (model.trial) {
     draw_trial(model, *model.trial, theme);
+  } else if (model.task) {
+    draw_task(model, *model.task, theme);
   } else {
     draw_tool(model, theme, answer);
     draw_material(model, theme, answer);

@@ -30,6 +30,18 @@ struct TrialRows {
   std::vector<BodyRow> bodies;
 };
 
+// State of a task that is trained, which the panel shows instead of the tool and the material. All texts are
+// for people.
+struct TaskRows {
+  struct Row {
+    std::string name, text;
+    std::optional<double> fraction = {};  // 0 to 1, of a bar; without it, the row has only text
+  };
+  std::string note;  // what to do
+  std::vector<Row> goal, spoon, hand;
+  std::string hand_name;
+};
+
 // Settings of the mouse as a hand.
 struct PressSettings {
   double strength_m = 0.004;  // depth of a press
@@ -86,6 +98,7 @@ struct PanelModel {
   std::string safety_text;         // reasons for a limited device force, one per line
   std::string drawing_text;        // details omitted from the picture
   std::optional<TrialRows> trial;  // only in frames of a trial
+  std::optional<TaskRows> task;    // only while a task is trained
 };
 
 // Makes the panel's contents. `snapshot` must be of the same session and tick as `facts`. `view` has the

@@ -35,17 +35,22 @@ void add_task_result(const Task& task, const HandModel& hand, const TaskResult& 
             "success", success);
   facts.add("", "", "end", task_end_names[static_cast<std::size_t>(result.end)]);
   facts.add("Time", decimals_text(result.time_s, 2) + " s", "time_s", result.time_s);
-  facts.add("Food lost", percent_text(result.food_lost_fraction), "food_lost_fraction",
-            result.food_lost_fraction);
+  if (result.error_m) facts.add("Error", short_length_text(*result.error_m), "error_m", *result.error_m);
+  if (task.has_spoon()) {
+    facts.add("Food lost", percent_text(result.food_lost_fraction), "food_lost_fraction",
+              result.food_lost_fraction);
+  }
   facts.add("Score", decimals_text(result.score(task), 1), "score", result.score(task));
   facts.add("Path", short_length_text(result.path_m), "path_m", result.path_m);
   facts.add("Smoothness", decimals_text(result.smoothness, 2) + " (spectral arc length)", "smoothness",
             result.smoothness);
   facts.add("Tremor", short_length_text(result.tremor_m), "tremor_m", result.tremor_m);
-  facts.add("Largest tilt", decimals_text(result.largest_tilt_rad * 180.0 / std::numbers::pi, 1) + "°",
-            "largest_tilt_rad", result.largest_tilt_rad);
+  if (task.has_spoon()) {
+    facts.add("Largest tilt", decimals_text(result.largest_tilt_rad * 180.0 / std::numbers::pi, 1) + "°",
+              "largest_tilt_rad", result.largest_tilt_rad);
+  }
   add_wrist(result, hand, facts);
-  if (hand.grip) {
+  if (hand.grip && task.has_spoon()) {
     facts.add("Grip", percent_text(result.grip_used) + " of what it holds", "grip_used", result.grip_used);
     facts.add("Turned in hand", decimals_text(result.turned_in_hand_rad * 180.0 / std::numbers::pi, 1) + "°",
               "turned_in_hand_rad", result.turned_in_hand_rad);

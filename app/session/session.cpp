@@ -324,6 +324,12 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.can_redo = session.history.can_redo();
   facts.in_stroke = session.history.in_stroke();
   facts.force_on = session.force_on;
+  if (!session.training) return facts.training.reset();
+  const Training& training = *session.training;
+  const SpoonHold* const hold = training.hold();
+  facts.training =
+      TrainingFacts{session.watch->progress(), session.watch->held_s(), training.wanted(),
+                    training.reached(),        training.wrist_angles(), hold ? hold->torque().used() : 0.0};
 }
 
 }  // namespace spoonbill

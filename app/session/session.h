@@ -133,6 +133,15 @@ Status apply_command(Session& session, const TimedCommand& command);
 // Checks that every command can be parsed, so that a replay reports a mistake at its start.
 Status check_commands(const std::vector<TimedCommand>& commands);
 
+// State of a training session that the panel and the picture show. Plain data.
+struct TrainingFacts {
+  TaskResult progress;   // without path length, smoothness and tremor, see TaskWatch::progress()
+  double held_s = 0.0;   // see TaskWatch::held_s()
+  Pose wanted, reached;  // of the bowl or the finger: as the person wants it, and as the hand reaches it
+  WristAngles wrist_rad{};
+  double grip_used = 0.0;  // see GripTorque::used()
+};
+
 // Settings and undo state of a session that the panel shows beside the snapshot. Plain data, copied from the
 // thread that ticks to the one that draws.
 struct SessionFacts {
@@ -148,6 +157,7 @@ struct SessionFacts {
   bool can_redo = false;
   bool in_stroke = false;
   bool force_on = true;
+  std::optional<TrainingFacts> training = {};
 };
 
 // Copies the facts. Allocates only when a text is longer than the previous one.

@@ -1,10 +1,18 @@
 #include "app/session/training_session.h"
 
+#include "app/session/task_goal.h"
+
 namespace spoonbill {
 namespace {
 
-// Returns the view of a task's document. The hand of the scene is far away, and the food hides nothing.
-Json task_view() {
+// Returns the view of a task's document. With a spoon, the tool of the scene is far away.
+Json task_view(const Task& task) {
+  if (!task.has_spoon()) {
+    return {
+        {"camera", {{"yaw_deg", 25}, {"pitch_deg", 35}}},
+        {"overlays",
+         {{"touched_nodes", false}, {"fixed_nodes", false}, {"fixing_planes", false}, {"legend", false}}}};
+  }
   return {{"camera", {{"yaw_deg", 25}, {"pitch_deg", 22}}},
           {"overlays", {{"tool", false}, {"touched_nodes", false}, {"force", false}}}};
 }
@@ -12,7 +20,7 @@ Json task_view() {
 }  // namespace
 
 Document TrainingSetting::document() const {
-  return {task.name, scene.scene, task_view()};
+  return {task.name, scene.scene, task_view(task)};
 }
 
 Result<TrainingSetting> read_training_setting(const TrainingChoice& choice) {
@@ -21,20 +29,19 @@ Result<TrainingSetting> read_training_setting(const TrainingChoice& choice) {
   TrainingSetting setting;
   setting.task = std::move(task).value();
   setting.seed = choice.seed;
+  setting.guidance = choice.guidance;
   if (!choice.hand.empty()) {
     auto hand = read_hand(choice.hand, choice.severity);
     if (!hand) return hand.error();
     setting.hand = std::move(hand).value();
   }
-  auto scene = make_training_scene(setting.task, choice.spoon);
+  auto scene = make_training_scene(setting.task, choice.spoon, choice.seed);
   if (!scene) return scene.error();
   setting.scene = std::move(scene).value();
   const std::filesystem::path& spoon = choice.spoon.empty() ? setting.task.spoon : choice.spoon;
-  setting.identity = {{"task", setting.task.name},
-                      {"spoon", spoon.stem().string()},
-                      {"hand", setting.hand.name},
-                      {"severity", setting.hand.severity},
-                      {"seed", setting.seed}};
+  setting.identity = {{"task", setting.task.name}, {"spoon", spoon.stem().string()},
+                      {"hand", setting.hand.name}, {"severity", setting.hand.severity},
+                      {"seed", setting.seed},      {"guidance", setting.guidance}};
   return setting;
 }
 
@@ -42,10 +49,15 @@ Result<Session> make_training_session(const TrainingSetting& setting, const std:
                                       const DeviceSpecification& device, InstructionSet set) {
   auto session = Session::make(setting.document(), source, device, set);
   if (!session) return session.error();
-  if (Status laid = Training::lay_food(session->simulation); !laid) return laid.error().in(source);
+  if (setting.task.has_spoon()) {
+    if (Status laid = Training::lay_food(session->simulation); !laid) return laid.error().in(source);
+  }
   session->keeps_documents = false;
-  session->training.emplace(setting.scene, setting.hand, setting.task.elbow_m, setting.seed);
+  session->training.emplace(setting.scene, setting.hand, setting.task.elbow_m, setting.seed,
+                            Guidance(setting.task.path_m, setting.guidance));
   session->watch.emplace(setting.task, setting.scene, session->simulation);
+  session->view.goal =
+      std::make_shared<const GoalMarks>(make_goal(setting.task, setting.scene, TrainingFacts()));
   return session;
 }
 

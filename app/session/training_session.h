@@ -20,7 +20,8 @@ struct TrainingChoice {
   std::filesystem::path spoon;     // default: that of the task
   std::filesystem::path hand;      // default: one that does all that is asked
   std::optional<double> severity;  // default: that of the hand's file
-  std::uint32_t seed = 1;          // selects the tremor
+  std::uint32_t seed = 1;          // selects the tremor, and the place of a lump
+  double guidance = 0.0;           // strength, in guidance_range
 };
 
 // A task, a spoon and a hand, as they are simulated. Plain data.
@@ -29,6 +30,7 @@ struct TrainingSetting {
   HandModel hand;
   TrainingScene scene;
   std::uint32_t seed = 1;
+  double guidance = 0.0;
   Json identity;  // as in RecordingHeader::training
 
   // Returns the document that a recording of the session has, with a view of all of the task.
@@ -38,7 +40,8 @@ struct TrainingSetting {
 // Reads the files. Errors are those of read_task(), read_hand() and make_training_scene().
 Result<TrainingSetting> read_training_setting(const TrainingChoice& choice);
 
-// Makes the session, with the food laid and a watch of the task. `source` names the task's file in messages.
+// Makes the session, with the food laid, a watch of the task and its goal in the view. `source` names the
+// task's file in messages.
 Result<Session> make_training_session(const TrainingSetting& setting, const std::string& source,
                                       const DeviceSpecification& device, InstructionSet set);
 

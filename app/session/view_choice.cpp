@@ -191,6 +191,7 @@ ViewSettings make_view_settings(const ViewChoice& choice, const Framing& framing
   settings.interface_scale = interface_scale;
   settings.overlays = choice.overlays;
   settings.see_through_body = choice.see_through_body;
+  settings.goal = choice.goal;
   settings.ground_y_m = choose_ground_y_m(framing.scene_ground_y_m, choice.ground_y_m, framing.lowest_y_m);
   return settings;
 }

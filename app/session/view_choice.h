@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,8 @@ struct ViewChoice {
   Overlays overlays;
   bool see_through_body = false;
   std::optional<double> ground_y_m;  // height of the ground; default: see choose_ground_y_m()
+  // Goal of a training session; null for other sessions. It is not part of the JSON.
+  std::shared_ptr<const GoalMarks> goal = {};
 };
 
 // Reads a view. `source` names the file in messages. An empty object gives the defaults.

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
+#include "app/assets_folder.h"
 #include "app/report/quantity_text.h"
 #include "app/study/study_tables.h"
 #include "engine/base/assert.h"
+#include "engine/base/file.h"
 #include "engine/base/text.h"
 
 namespace spoonbill {
@@ -67,6 +70,19 @@ std::string data_element(const char* id, const Json& data) {
   // A "<" in a name could end the script element.
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
   return std::string("<script type=\"application/json\" id=") + id + ">" + json + "</script>\n";
+}
+
+Result<std::string> make_page(const std::string& title, const std::string& heading, const std::string& body) {
+  constexpr std::size_t part_limit_bytes = std::size_t{1} << 20;
+  const std::filesystem::path folder = std::filesystem::path(assets_folder) / "report";
+  const auto style = read_file(folder / "study.css", part_limit_bytes);
+  if (!style) return style.error();
+  const auto script = read_file(folder / "study.js", part_limit_bytes);
+  if (!script) return script.error();
+  return "<!doctype html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+         "content=\"width=device-width, initial-scale=1\"><title>" +
+         html(title) + "</title>\n<style>\n" + style.value() + "</style></head><body>\n<h1>" + html(heading) +
+         "</h1>\n" + body + "<script>\n" + script.value() + "</script>\n</body></html>\n";
 }
 
 PageTable::PageTable(std::string_view id, std::vector<std::string> headings)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/study/study_summary.h"
+#include "engine/base/result.h"
 #include "engine/exchange/json.h"
 
 namespace spoonbill {
@@ -26,6 +27,10 @@ std::string series_label(const StudySeries& series);
 std::string section(const char* id, const char* heading);
 // Returns a script element of this id with data for the page's script.
 std::string data_element(const char* id, const Json& data);
+
+// Returns a page that needs no other file and no network: `body` is its HTML, without the heading. Its style
+// and its script come with the program; the error names a file that is missing.
+Result<std::string> make_page(const std::string& title, const std::string& heading, const std::string& body);
 
 // An HTML table that grows row by row. A heading is aligned as the cells of the first row are.
 class PageTable {

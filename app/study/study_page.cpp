@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "app/assets_folder.h"
 #include "app/report/quantity_text.h"
 #include "app/study/case_trial.h"
 #include "app/study/page_parts.h"
@@ -14,13 +13,10 @@
 #include "app/study/study_design_parts.h"
 #include "app/study/study_tables.h"
 #include "engine/base/assert.h"
-#include "engine/base/file.h"
 #include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {
-
-constexpr std::size_t page_part_limit_bytes = std::size_t{1} << 20;
 
 std::string answer_part(const StudyPlan& plan, const StudySummary& summary) {
   std::string text = section("answer", "At which tilts the food holds");
@@ -434,27 +430,17 @@ std::string method_part(const StudyPlan& plan) {
 Result<std::string> make_study_page(const StudyPlan& plan, const CaseResults& results,
                                     const StudySummary& summary, const Bendings& bendings,
                                     const std::vector<StudyPicture>& pictures) {
-  const std::filesystem::path folder = std::filesystem::path(assets_folder) / "report";
-  const auto style = read_file(folder / "study.css", page_part_limit_bytes);
-  if (!style) return style.error();
-  const auto script = read_file(folder / "study.js", page_part_limit_bytes);
-  if (!script) return script.error();
   const auto hand = hand_part(plan, bendings);
   if (!hand) return hand.error();
   std::string names;
   for (const StudySpoon& spoon : plan.spoons) names += (names.empty() ? "" : ", ") + spoon.name;
-  std::string page =
-      "<!doctype html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
-      "content=\"width=device-width, initial-scale=1\"><title>" +
-      html("Does the food stay on " + names + "?") + "</title>\n<style>\n" + style.value() +
-      "</style></head><body>\n<h1>Does the food stay on the spoon?</h1>\n<p>" + html(names) + ". " +
-      std::to_string(results.size()) + " cases.</p>\n";
+  std::string page = "<p>" + html(names) + ". " + std::to_string(results.size()) + " cases.</p>\n";
   page += answer_part(plan, summary) + strips_part(plan, summary) + plot_part(plan, summary) +
           pictures_part(pictures);
   page += hand.value() + ratings_part(plan) + factors_part(plan, summary) + grid_part(plan, summary) +
           sample_part(plan, results) + sensitivity_part(plan, summary) + trust_part(plan, results, summary);
   page += claim_part(summary) + cases_part(results) + method_part(plan);
-  return page + "<script>\n" + script.value() + "</script>\n</body></html>\n";
+  return make_page("Does the food stay on " + names + "?", "Does the food stay on the spoon?", page);
 }
 
 }  // namespace spoonbill

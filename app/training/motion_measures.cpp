@@ -27,8 +27,9 @@ std::vector<Vector3> subtract_means(const std::vector<Vector3>& positions_m, dou
 
 double find_path_length_m(const std::vector<Vector3>& positions_m) {
   double length_m = 0.0;
-  for (std::size_t k = 1; k < positions_m.size(); ++k)
+  for (std::size_t k = 1; k < positions_m.size(); ++k) {
     length_m += (positions_m[k] - positions_m[k - 1]).norm();
+  }
   return length_m;
 }
 

@@ -15,6 +15,9 @@ namespace spoonbill {
 enum class TaskEnd { under_way, success, lost, late };
 inline constexpr const char* task_end_names[] = {"under_way", "success", "lost", "late"};
 
+// Time for which food that is scooped has stayed on the spoon.
+inline constexpr double scooped_s = 0.5;
+
 // Result of a task. Plain data.
 struct TaskResult {
   TaskEnd end = TaskEnd::under_way;
@@ -28,13 +31,16 @@ struct TaskResult {
   double turned_in_hand_rad = 0.0;                        // angle by which the spoon has turned in the hand
   double largest_force_n = 0.0;                           // on the device
   double largest_tilt_rad = 0.0;                          // of the bowl from level
+  std::optional<double> error_m;                          // palpate: of the mark from the lump, level
 
-  // 100 for food that is all there at once: a success scores 100 less half of the used part of the time limit
-  // and half of the lost part of the food; everything else scores 0.
+  // A success scores 100, less 50 times the used part of the time limit, less 50 times the lost part of the
+  // food or, in a palpation, 50 times the error as a part of the largest that is allowed. Everything else
+  // scores 0.
   double score(const Task& task) const;
 };
 
-// Watches a training tick by tick until the task has ended. Does not change it. One owner; allocates.
+// Watches a training tick by tick until the task has ended. Does not change it. One owner. follow() allocates
+// nothing.
 class TaskWatch {
  public:
   TaskWatch(const Task& task, const TrainingScene& scene, const Simulation& simulation);
@@ -42,23 +48,29 @@ class TaskWatch {
   // Called after each tick, with the force on the device.
   void follow(const Simulation& simulation, const Training& training, const Vector3& force_n);
 
-  bool has_ended() const { return end_ != TaskEnd::under_way; }
-  // Returns the result so far.
+  bool has_ended() const { return measures_.end != TaskEnd::under_way; }
+  // Returns the result so far. Allocates.
   TaskResult result() const;
+  // Returns the part of the result that needs no path: all but its length, smoothness and tremor.
+  const TaskResult& progress() const { return measures_; }
+  // Returns the time for which the bowl has been level, or the food clear of the dish, without a break, s.
+  double held_s() const { return held_s_; }
 
  private:
-  TaskEnd judge(const Simulation& simulation, const Pose& bowl, double time_s);
+  TaskEnd judge_food(const Simulation& simulation, const Pose& bowl);
+  TaskEnd judge_mark(const Training& training);
+  TaskEnd judge_scoop(const Simulation& simulation, bool is_lost);
+  TaskEnd judge_bite(const Simulation& simulation, const Pose& bowl, const Spill* spill);
 
   Task task_;
-  int food_, spoon_;
+  int food_;
+  Vector3 lump_m_;
   double dish_top_m_;
   SpillWatch spills_;
-  TaskEnd end_ = TaskEnd::under_way;
   TaskResult measures_;
-  double held_s_ =
-      0.0;  // level, scoop: time for which the bowl has been level, or clear of the dish, without a break
-  std::optional<bool>
-      has_pitch_;  // eat: whether the bowl had the pitch asked for as it passed the mouth's plane
+  double held_s_ = 0.0;
+  // True if the bowl of an eat task had the pitch asked for as it passed the mouth's plane; empty before.
+  std::optional<bool> has_pitch_;
   std::vector<Vector3> path_m_;  // of the rim's centre, every path_ticks ticks
   static constexpr int path_ticks = 10;
 };

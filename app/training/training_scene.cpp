@@ -5,6 +5,7 @@
 
 #include "app/study/case_trial.h"
 #include "app/study/spoon_measures.h"
+#include "app/training/palpation_scene.h"
 #include "app/training/wrist.h"
 #include "engine/scene/place_body.h"
 
@@ -86,7 +87,12 @@ Result<Scene> lay_in_dish(const Task& task, double& dish_top_m) {
 
 }  // namespace
 
-Result<TrainingScene> make_training_scene(const Task& task, const std::filesystem::path& file) {
+Result<TrainingScene> make_training_scene(const Task& task, const std::filesystem::path& file,
+                                          std::uint32_t seed) {
+  if (!task.has_spoon()) {
+    if (!file.empty()) return Error{ErrorCode::unsupported, "the task " + task.name + " has no spoon"};
+    return make_palpation_scene(task, seed);
+  }
   auto spoon = read_spoon(file.empty() ? task.spoon : file);
   if (!spoon) return spoon.error();
   if (Status level = level_spoon(spoon.value()); !level) return level.error().in(spoon->file.string());
@@ -107,7 +113,12 @@ Result<TrainingScene> make_training_scene(const Task& task, const std::filesyste
     scene->bodies[bearer_index] = spoon->body;
   }
   held->body = static_cast<int>(scene->bodies.size()) - 1;
-  return TrainingScene{std::move(scene).value(), food_index, dish_top_m, held.value()};
+  TrainingScene made;
+  made.scene = std::move(scene).value();
+  made.food = food_index;
+  made.dish_top_m = dish_top_m;
+  made.spoon = held.value();
+  return made;
 }
 
 }  // namespace spoonbill

@@ -163,6 +163,10 @@ std::optional<std::string> stage_caption(const ViewSettings& settings);
 // Returns the box around all shapes.
 Box bounding_box(const StageShapes& shapes);
 
+// Appends the goal of a task, defined in goal_overlays.cpp: rings around places to reach, dashed paths with
+// an arrow head, thin reference lines, and diamonds at marked points.
+void append_goal(const GoalMarks& goal, std::vector<OverlayLine>& lines, std::vector<OverlayMark>& marks);
+
 // Overlays of the ground, defined in ground_overlays.cpp: the grid and the scale bar.
 
 // Appends the lines of the ground grid, at multiples of a power of ten that suits the distance of the camera.

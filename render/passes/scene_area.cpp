@@ -200,6 +200,17 @@ std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& 
   }
   strips.include(bounding_box(stage_shapes(snapshot, settings)));
   include_planes(snapshot, on, body, strips);
+  if (settings.goal) {
+    std::vector<OverlayLine> lines;
+    std::vector<OverlayMark> marks;
+    append_goal(*settings.goal, lines, marks);
+    for (const OverlayLine& line : lines) {
+      Strips::Hull hull(strips);
+      hull.include(line.start_m);
+      hull.include(line.end_m);
+    }
+    for (const OverlayMark& mark : marks) Strips::Hull(strips).include(mark.position_m);
+  }
   return strips.areas();
 }
 

@@ -165,6 +165,7 @@ void ScenePasses::draw_scene(const FrameView& view, const Snapshot& snapshot, co
   if (settings.overlays.symmetry_plane) draw_symmetry(view, snapshot, bodies.bounds());
   if (settings.overlays.tool) draw_tools(view, snapshot);
   draw_stage(view, snapshot, settings);
+  draw_goal(view, snapshot, settings);
   if (settings.overlays.touched_nodes) draw_touched(view, snapshot);
 }
 
@@ -194,6 +195,15 @@ void ScenePasses::draw_force(const FrameView& view, const Snapshot& snapshot,
   const Eigen::Vector3f start = arrow->start_m.cast<float>();
   passes_.solid.draw_arrow(view, start, arrow->tip_m.cast<float>(), pixels_at(view, start, arrow_width_px),
                            palette::force);
+}
+
+void ScenePasses::draw_goal(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) {
+  if (!settings.goal) return;
+  lines_.clear();
+  marks_.clear();
+  append_goal(*settings.goal, lines_, marks_);
+  passes_.line.draw(view, lines_, lift_m(view, snapshot));
+  passes_.mark.draw(view, marks_, lift_m(view, snapshot));
 }
 
 void ScenePasses::draw_rings(const FrameView& view, const Snapshot& snapshot, const BodyMeshes& bodies) {

@@ -80,6 +80,7 @@ class ScenePasses {
   void draw_tools(const FrameView& view, const Snapshot& snapshot);
   void draw_tool(const FrameView& view, const ToolSnapshot& tool, const ToolFrame& frame);
   void draw_stage(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings) const;
+  void draw_goal(const FrameView& view, const Snapshot& snapshot, const ViewSettings& settings);
   void draw_touched(const FrameView& view, const Snapshot& snapshot);
 
   Passes passes_;

@@ -18,16 +18,16 @@ void EditWindow::SetUp() {
   setenv("XDG_STATE_HOME", place_.text("state").c_str(), 1);
 }
 
-void EditWindow::start(const std::vector<std::string>& arguments) {
+void EditWindow::start(const std::vector<std::string>& arguments, const std::string& command) {
   std::filesystem::remove(log_file());
-  std::string command = "exec \"" SPOONBILL_PROGRAM "\" edit";
-  for (const std::string& argument : arguments) command += " \"" + argument + "\"";
+  std::string line = "exec \"" SPOONBILL_PROGRAM "\" " + command;
+  for (const std::string& argument : arguments) line += " \"" + argument + "\"";
   editor_ = fork();
   ASSERT_GE(editor_, 0);
   if (editor_ == 0) {
     setenv("SPOONBILL_FRAME_LOG", log_file().c_str(), 1);
     setenv("DISPLAY", display_->name().c_str(), 1);
-    execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
     _exit(127);
   }
   ASSERT_TRUE(wait_for([&] { return hands("search --onlyvisible --name Spoonbill windowfocus --sync"); }));

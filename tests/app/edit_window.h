@@ -26,7 +26,8 @@ class EditWindow : public testing::Test {
   void SetUp() override;
   void TearDown() override { kill_editor(); }
 
-  void start(const std::vector<std::string>& arguments);
+  // Starts a command of the program that opens a window.
+  void start(const std::vector<std::string>& arguments, const std::string& command = "edit");
   std::filesystem::path log_file() const { return place_.path("frames.log"); }
 
   // Returns the last frame shown, with the fields of ShownFrame; empty before the first frame.

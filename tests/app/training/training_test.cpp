@@ -13,10 +13,13 @@
 #include "app/program.h"
 #include "app/training/motion_measures.h"
 #include "app/training/task.h"
+#include "app/training/task_watch.h"
 #include "engine/base/processor.h"
+#include "haptic/recording_lines.h"
 #include "haptic/virtual_device.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/allocations.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -41,12 +44,32 @@ class Demonstrations : public testing::TestWithParam<const char*> {};
 TEST_P(Demonstrations, SucceedAndReplayToTheirStates) {
   const Json result = train(GetParam());
   EXPECT_EQ(result["success"], true) << result["end"];
-  EXPECT_EQ(result["food_lost_fraction"], 0.0);
+  EXPECT_EQ(result.value("food_lost_fraction", 0.0), 0.0);
+  EXPECT_LT(result.value("error_m", 0.0), 0.003);
   EXPECT_GT(result["score"], 50.0);
   EXPECT_LT(result["tremor_m"], 0.2e-3);
   EXPECT_LE(result["largest_force_n"], VirtualDevice::default_specification().maximum_force_n);
 }
-INSTANTIATE_TEST_SUITE_P(Tasks, Demonstrations, testing::Values("scoop", "carry", "level", "eat"));
+INSTANTIATE_TEST_SUITE_P(Tasks, Demonstrations, testing::Values("scoop", "carry", "level", "eat", "palpate"));
+
+// A demonstration of a task with each bundled hand, whether or not it succeeds: the hand is that of the
+// recording, and its states are compared on the way. Exercises one recording of each hand, or all in a long
+// run.
+TEST(HandDemonstrations, ReplayToTheirStates) {
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  for (const auto& entry : std::filesystem::directory_iterator(asset("hands"))) {
+    const HandModel hand = read_hand(entry.path()).value();
+    for (const std::string task : {"carry", "level"}) {
+      if (task == "level" && !is_long_run()) continue;
+      const std::string file =
+          asset("recordings/hands/" + task + "-" + entry.path().stem().string() + ".recording.jsonl");
+      const Outcome outcome = run({"train", asset("tasks/" + task + ".json"), "--recording", file, "--json"});
+      ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+      EXPECT_EQ(json_of(outcome.out)["hand"], hand.name);
+      EXPECT_EQ(json_of(outcome.out)["state_hash"], hash_text(read_recording(file)->end->state_hash));
+    }
+  }
+}
 
 // The difference between seeds is tested with the tremor itself.
 TEST(Training, TremorReachesTheBowlTheSameEachTime) {
@@ -91,15 +114,18 @@ TEST(Training, TickAllocatesNothing) {
   hand.grip = read_hand(asset("hands/weak-grip.json"))->grip;
   Simulation simulation = Simulation::make(scene.scene, best_instruction_set()).value();
   ASSERT_TRUE(Training::lay_food(simulation));
-  Training training(scene, hand, task.elbow_m, 1);
+  Training training(scene, hand, task.elbow_m, 1, Guidance(task.path_m, 1.0));
+  TaskWatch watch(task, scene, simulation);
   CouplingState coupling;
   const DeviceSpecification device = VirtualDevice::default_specification();
   const std::size_t before = allocation_count();
   for (int k = 0; k < 300; ++k) {
     const Pose wanted{Vector3(0.0, 2e-5 * k, 0.0), Quaternion::Identity()};
-    training.tick(simulation, coupling, device, DeviceReading::from(wanted, 0));
+    const TickResult result = training.tick(simulation, coupling, device, DeviceReading::from(wanted, 0));
+    watch.follow(simulation, training, result.force_n);
   }
   EXPECT_EQ(allocation_count(), before);
+  EXPECT_GT(watch.progress().time_s, 0.2);
 }
 
 TEST(MotionMeasures, SmoothReachHasTheArcLengthOfItsSpectrum) {
