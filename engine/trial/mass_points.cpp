@@ -63,6 +63,17 @@ MassPoints::MassPoints(const SpringLattice& lattice, const Surface& at_rest) {
   }
   SPOONBILL_ASSERT(volume_m3 > 0.0);
   for (Cell& cell : cells_) cell.fraction /= volume_m3;
+  std::vector<double> node_fractions(static_cast<std::size_t>(mesh.node_count()), 0.0);
+  std::size_t at = 0;
+  for (const Cell& cell : cells_) {
+    for (int k = 0; k < cell.count; ++k, ++at) {
+      for (std::size_t c = 0; c < 8; ++c)
+        node_fractions[static_cast<std::size_t>(cell.nodes[c])] += cell.fraction * weights_[places_[at]][c];
+    }
+  }
+  for (std::size_t n = 0; n < node_fractions.size(); ++n) {
+    if (node_fractions[n] > 0.0) node_weights_.push_back({static_cast<int>(n), node_fractions[n]});
+  }
 }
 
 }  // namespace spoonbill

@@ -68,8 +68,8 @@ bool Rim::follow(const Surface& surface, const std::vector<Vector2>& corners, co
 }
 
 bool Rim::is_outside(const Vector3& point_m) const {
+  if (is_well_inside(point_m)) return false;
   const Vector2 point = projected(point_m);
-  if (point.squaredNorm() < inner_radius_m_ * inner_radius_m_) return false;
   return box_m_.squared_distance(point) > 0.0 || !is_inside(point, outline_m_);
 }
 

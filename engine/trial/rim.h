@@ -32,6 +32,11 @@ class Rim {
   Vector2 from_centre_m(const Vector3& point_m) const { return projected(point_m); }
   // Returns true if a point, projected along the normal, is outside the rim.
   bool is_outside(const Vector3& point_m) const;
+  // Returns true for a point that is near enough to the centre to be inside the rim, wherever it is around.
+  // If all corners of a convex body are, the whole body is inside.
+  bool is_well_inside(const Vector3& point_m) const {
+    return projected(point_m).squaredNorm() < inner_radius_m_ * inner_radius_m_;
+  }
   // Returns the distance of a point from the rim, both projected along the normal, m; negative outside.
   double margin_m(const Vector3& point_m) const;
 

@@ -51,22 +51,24 @@ void measure_fractions(const Border& border, const MassPoints& points, const Spr
                        Spill& spill) {
   double all = 0.0, outside = 0.0, spilled = 0.0;
   Vector2 sum_m = Vector2::Zero();
-  points.for_each(lattice, [&](const Vector3& point, double fraction) {
+  const auto visit = [&](const Vector3& point, double fraction) {
     all += fraction;
     if (!border.is_outside(point)) return;
     outside += fraction;
     sum_m += fraction * border.rim.from_centre_m(point);
     if (border.is_below(point)) spilled += fraction;
+  };
+  points.for_each(lattice, visit, [&](const CellCorners& corners, double fraction) {
+    const bool is_inside =
+        border.is_upright && std::all_of(corners.begin(), corners.end(), [&](const Vector3& corner) {
+          return border.rim.is_well_inside(corner);
+        });
+    if (is_inside) all += fraction;
+    return is_inside;
   });
   spill.outside_m = outside > 0.0 ? Vector2(sum_m / outside) : Vector2(Vector2::Zero());
   spill.outside_fraction = outside / all;
   spill.spilled_fraction = spilled / all;
-}
-
-Vector3 find_centre_m(const MassPoints& points, const SpringLattice& lattice) {
-  Vector3 centre = Vector3::Zero();
-  points.for_each(lattice, [&](const Vector3& point, double fraction) { centre += fraction * point; });
-  return centre;
 }
 
 }  // namespace
@@ -114,7 +116,7 @@ void SpillWatch::measure(const Simulation& simulation, double time_s) {
     if (!rigid && !points_[b]) {
       points_[b].emplace(simulation.lattice(body), simulation.scene().bodies[b].surface);
     }
-    const Vector3 centre = rigid ? rigid->centre_m() : find_centre_m(*points_[b], simulation.lattice(body));
+    const Vector3 centre = rigid ? rigid->centre_m() : points_[b]->find_centre_m(simulation.lattice(body));
     const bool is_out = border.is_outside(centre);
     const bool is_borne = !is_out && up_.dot(centre) > border.lowest_m;
     if (!spills_[b] && !is_borne) continue;
