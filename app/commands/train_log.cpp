@@ -81,7 +81,7 @@ Status show_progress(const std::string& person, const std::filesystem::path& pag
     all.push_back(attempt_to_json(attempt));
     const std::string hand = attempt.hand.empty() ? "not modelled" : attempt.hand;
     facts.add(attempt.date,
-              attempt.task + ", " + attempt.spoon + ", " + hand + ": " +
+              attempt.task + (attempt.spoon.empty() ? "" : ", " + attempt.spoon) + ", " + hand + ": " +
                   task_end_names[static_cast<std::size_t>(attempt.end)] + ", score " +
                   decimals_text(attempt.score, 0) + ", " + decimals_text(attempt.time_s, 1) + " s",
               "", nullptr);

@@ -158,9 +158,9 @@ TEST(PersonLog, LinesThatWereChangedAreCountedAndLeftOut) {
 }
 
 TEST(PersonLog, NamesCannotLeaveTheFolder) {
-  for (const std::string name :
-       {"", "../ada", "a/b", "a.b", ".", "ada lovelace", std::string(65, 'a').c_str()})
-    EXPECT_FALSE(PersonLog::find("/tmp", name)) << name;
+  const std::vector<std::string> wrong = {
+      "", "../ada", "a/b", "a.b", ".", "ada lovelace", std::string(65, 'a')};
+  for (const std::string& name : wrong) EXPECT_FALSE(PersonLog::find("/tmp", name)) << name;
   EXPECT_TRUE(PersonLog::find("/tmp", std::string(64, 'a')));
 }
 
