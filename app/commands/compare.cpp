@@ -18,17 +18,22 @@
 namespace spoonbill {
 namespace {
 
+constexpr const char* comparison_page_name = "comparison.html";
+constexpr const char* comparison_table_name = "comparison.csv";
+
 struct CompareOptions {
   std::filesystem::path task, script, out;
   std::vector<std::filesystem::path> spoons, hands;
   int seeds = 20;
   int workers = 0;  // 0: one for each processor
   InstructionSet instruction_set = best_instruction_set();
+  OutputOptions how{NamedBy::program, false};
   bool json = false;
-};
 
-constexpr const char* comparison_page_name = "comparison.html";
-constexpr const char* comparison_table_name = "comparison.csv";
+  std::vector<std::filesystem::path> outputs() const {
+    return {out / comparison_page_name, out / comparison_table_name};
+  }
+};
 
 // Returns the spoons of the founding paper that come with the program.
 std::vector<std::filesystem::path> list_bundled_concepts() {
@@ -46,7 +51,7 @@ std::vector<std::filesystem::path> list_bundled_hands() {
   std::error_code ignored;
   for (const auto& entry :
        std::filesystem::directory_iterator(std::filesystem::path(assets_folder) / "hands", ignored)) {
-    files.push_back(entry.path());
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -67,6 +72,7 @@ Result<ComparisonPlan> make_comparison_plan(const CompareOptions& options) {
     return Error{ErrorCode::unsupported,
                  script->commands.front().origin + ": a task has no commands; only motions steer it"};
   }
+  plan.script_file = options.script;
   plan.script = std::move(script).value();
   plan.task = options.task;
   plan.spoons = options.spoons.empty() ? list_bundled_concepts() : options.spoons;
@@ -76,12 +82,22 @@ Result<ComparisonPlan> make_comparison_plan(const CompareOptions& options) {
   return plan;
 }
 
-Status compare(const CompareOptions& options, Console& console) {
-  for (const auto& source : {options.task, options.script}) {
-    for (const char* const name : {comparison_page_name, comparison_table_name}) {
-      if (Status checked = check_is_not_source(options.out / name, source, "--out"); !checked) return checked;
+// Refuses outputs that would replace a source, and those that cannot be replaced.
+Status check_outputs(const CompareOptions& options) {
+  std::vector<std::filesystem::path> sources = {options.task, options.script};
+  sources.insert(sources.end(), options.spoons.begin(), options.spoons.end());
+  sources.insert(sources.end(), options.hands.begin(), options.hands.end());
+  for (const std::filesystem::path& output : options.outputs()) {
+    for (const std::filesystem::path& source : sources) {
+      if (Status checked = check_is_not_source(output, source, "--out"); !checked) return checked;
     }
+    if (Status checked = check_output(output, options.how); !checked) return checked;
   }
+  return {};
+}
+
+Status compare(const CompareOptions& options, Console& console) {
+  if (Status checked = check_outputs(options); !checked) return checked;
   const auto task = read_task(options.task);
   if (!task) return task.error();
   if (!task->has_spoon()) {
@@ -97,17 +113,18 @@ Status compare(const CompareOptions& options, Console& console) {
   const auto cells = run_comparison(
       plan.value(), options.workers > 0 ? options.workers : processors, [&] { return interrupt.requested(); },
       [&](std::size_t done, std::size_t all) { progress.show(done, all); });
-  if (!cells) {
-    if (cells.error().code == ErrorCode::cancelled) interrupt.answer();
-    return cells.error();
+  if (!cells && cells.error().code == ErrorCode::cancelled) {
+    interrupt.answer();
+    return stopped_before_writing(options.outputs().front());
   }
+  if (!cells) return cells.error();
   const auto page = make_comparison_page(task.value(), plan.value(), cells.value());
   if (!page) return page.error();
-  const OutputOptions how{NamedBy::program, false};
   const std::filesystem::path page_file = options.out / comparison_page_name;
-  if (Status written = write_file(page_file, page.value(), Durability::later, how); !written) return written;
+  if (Status written = write_file(page_file, page.value(), Durability::later, options.how); !written)
+    return written;
   if (Status written = write_file(options.out / comparison_table_name, make_comparison_csv(cells.value()),
-                                  Durability::later, how);
+                                  Durability::later, options.how);
       !written) {
     return written;
   }
@@ -116,12 +133,13 @@ Status compare(const CompareOptions& options, Console& console) {
   FactSheet facts;
   facts.add("Task", task->name, "task", task->name);
   for (const ComparedCell& cell : cells.value()) {
-    facts.add(cell.spoon + ", " + (cell.hand.empty() ? "not modelled" : cell.hand),
+    facts.add(cell.spoon + ", " + name_of_hand(cell.hand),
               cell_verdict_names[static_cast<std::size_t>(judge(cell))], "", nullptr);
   }
   facts.add("", "", "cells", comparison_to_json(cells.value()));
   facts.add("Limited wrist", answer.text, "limited_wrist",
             {{"is_known", answer.is_known},
+             {"is_true", answer.is_true ? Json(*answer.is_true) : Json()},
              {"straight", cell_verdict_names[static_cast<std::size_t>(answer.straight)]},
              {"succeeds_with", answer.better},
              {"text", answer.text}});
@@ -156,6 +174,7 @@ CommandEntry add_compare(OptionSet root) {
       .require();
   parser.add_option("--workers", options->workers, "Number of threads; default: that of the processors")
       .limit(Range<int>{1, 256});
+  add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return compare(*options, console); }};

@@ -5,12 +5,14 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <thread>
 #include <utility>
 
 #include "app/session/lockstep.h"
 #include "app/training/person_log.h"
 #include "engine/base/assert.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 namespace {
@@ -64,21 +66,69 @@ bool trembles(const HandModel& hand) {
   return hand.tremor && (hand.tremor->amplitude_m > 0.0 || hand.tremor->turn_rad > 0.0);
 }
 
+// Refuses a name that an earlier file has; otherwise keeps it.
+Status keep_name(const std::string& name, const std::filesystem::path& file,
+                 std::map<std::string, std::filesystem::path>& names) {
+  const auto [found, is_new] = names.emplace(name, file);
+  if (is_new) return {};
+  return Error{ErrorCode::duplicate,
+               file.string() + ": has the name '" + excerpt(name) + "' of " +
+                   (found->second.empty() ? "the hand that is not modelled" : found->second.string()) +
+                   "; give one of them another name",
+               "name"};
+}
+
+// Reads the hands of a comparison, in order.
+Result<std::vector<HandModel>> read_compared_hands(const std::vector<std::filesystem::path>& files) {
+  std::vector<HandModel> hands;
+  std::map<std::string, std::filesystem::path> names;
+  for (const std::filesystem::path& file : files) {
+    HandModel hand;
+    if (!file.empty()) {
+      auto read = read_hand(file);
+      if (!read) return read.error();
+      hand = std::move(read).value();
+    }
+    if (Status kept = keep_name(name_of_hand(hand.name), file, names); !kept) return kept.error();
+    hands.push_back(std::move(hand));
+  }
+  return hands;
+}
+
 }  // namespace
 
+std::string name_of_hand(const std::string& hand) {
+  return hand.empty() ? "not modelled" : hand;
+}
+
 int ComparedCell::success_count() const {
-  return static_cast<int>(std::count_if(
-      runs.begin(), runs.end(), [](const ComparedRun& run) { return run.result.end == TaskEnd::success; }));
+  return static_cast<int>(std::count_if(runs.begin(), runs.end(), [](const ComparedRun& run) {
+    return run.failure.empty() && run.result.end == TaskEnd::success;
+  }));
+}
+
+int ComparedCell::result_count() const {
+  return static_cast<int>(
+      std::count_if(runs.begin(), runs.end(), [](const ComparedRun& run) { return run.failure.empty(); }));
+}
+
+std::string ComparedCell::failure() const {
+  const auto found =
+      std::find_if(runs.begin(), runs.end(), [](const ComparedRun& run) { return !run.failure.empty(); });
+  return found == runs.end() ? std::string() : found->failure;
 }
 
 MeanOfRuns find_mean(const ComparedCell& cell, const std::function<double(const ComparedRun&)>& measure) {
   MeanOfRuns found;
-  const auto count = static_cast<double>(cell.runs.size());
-  if (cell.runs.empty()) return found;
-  for (const ComparedRun& run : cell.runs) found.mean += measure(run) / count;
+  std::vector<double> values;
+  for (const ComparedRun& run : cell.runs) {
+    if (run.failure.empty()) values.push_back(measure(run));
+  }
+  const auto count = static_cast<double>(values.size());
+  for (const double value : values) found.mean += value / count;
   double squares = 0.0;
-  for (const ComparedRun& run : cell.runs) squares += std::pow(measure(run) - found.mean, 2);
-  if (cell.runs.size() > 1) found.deviation = std::sqrt(squares / (count - 1.0));
+  for (const double value : values) squares += std::pow(value - found.mean, 2);
+  if (values.size() > 1) found.deviation = std::sqrt(squares / (count - 1.0));
   return found;
 }
 
@@ -91,11 +141,16 @@ Range<double> find_rate_interval(int successes, int runs) {
   return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
+Range<double> find_rate_interval(const ComparedCell& cell) {
+  const int runs = static_cast<int>(cell.runs.size()), successes = cell.success_count();
+  const int given_up = runs - cell.result_count();
+  return {find_rate_interval(successes, runs).low, find_rate_interval(successes + given_up, runs).high};
+}
+
 CellVerdict judge(const ComparedCell& cell) {
-  if (!cell.failure.empty() || cell.runs.empty()) return CellVerdict::unusable;
-  const int successes = cell.success_count();
-  if (!cell.is_random) return successes > 0 ? CellVerdict::succeeds : CellVerdict::fails;
-  const Range<double> rate = find_rate_interval(successes, static_cast<int>(cell.runs.size()));
+  if (cell.result_count() == 0) return CellVerdict::unusable;
+  if (!cell.is_random) return cell.success_count() > 0 ? CellVerdict::succeeds : CellVerdict::fails;
+  const Range<double> rate = find_rate_interval(cell);
   if (rate.low > 0.5) return CellVerdict::succeeds;
   return rate.high < 0.5 ? CellVerdict::fails : CellVerdict::undecided;
 }
@@ -105,16 +160,15 @@ Result<std::vector<ComparedCell>> run_comparison(
     const std::function<void(std::size_t, std::size_t)>& report) {
   SPOONBILL_ASSERT(workers >= 1 && plan.seeds >= 1);
   if (const auto task = read_task(plan.task); !task) return task.error();
+  const auto hands = read_compared_hands(plan.hands);
+  if (!hands) return hands.error();
+  std::map<std::string, std::filesystem::path> spoons;
   std::vector<ComparedCell> cells;
   std::vector<ComparisonJob> jobs;
   for (const std::filesystem::path& spoon : plan.spoons) {
-    for (const std::filesystem::path& hand_file : plan.hands) {
-      HandModel hand;
-      if (!hand_file.empty()) {
-        auto read = read_hand(hand_file);
-        if (!read) return read.error();
-        hand = std::move(read).value();
-      }
+    if (Status kept = keep_name(spoon.stem().string(), spoon, spoons); !kept) return kept.error();
+    for (std::size_t h = 0; h < plan.hands.size(); ++h) {
+      const HandModel& hand = hands.value()[h];
       ComparedCell cell;
       cell.spoon = spoon.stem().string();
       cell.hand = hand.name;
@@ -125,23 +179,25 @@ Result<std::vector<ComparedCell>> run_comparison(
         TrainingChoice choice;
         choice.task = plan.task;
         choice.spoon = spoon;
-        choice.hand = hand_file;
+        choice.hand = plan.hands[h];
         choice.seed = static_cast<std::uint32_t>(run + 1);
         jobs.push_back({cells.size(), run, choice});
       }
       cells.push_back(std::move(cell));
     }
   }
-  std::vector<std::string> failures(jobs.size());
   std::atomic<std::size_t> next{0}, ended{0};
   std::atomic<bool> stopped{false};
   const auto work = [&] {
     for (std::size_t k = next++; k < jobs.size() && !stopped.load(); k = next++) {
       auto run = run_script_safely(plan, jobs[k].choice, stopped);
+      // No other thread reads or writes this run.
+      ComparedRun& kept = cells[jobs[k].cell].runs[jobs[k].run];
       if (run) {
-        cells[jobs[k].cell].runs[jobs[k].run] = std::move(run).value();
+        kept = std::move(run).value();
       } else {
-        failures[k] = run.error().message;
+        kept.seed = jobs[k].choice.seed;
+        kept.failure = run.error().message;
       }
       ++ended;
     }
@@ -156,14 +212,6 @@ Result<std::vector<ComparedCell>> run_comparison(
   }
   threads.clear();  // waits for all of them
   if (stopped) return Error{ErrorCode::cancelled, "stopped"};
-  for (std::size_t k = 0; k < jobs.size(); ++k) {
-    if (failures[k].empty()) continue;
-    ComparedCell& cell = cells[jobs[k].cell];
-    if (cell.failure.empty()) cell.failure = failures[k];
-  }
-  for (ComparedCell& cell : cells) {
-    if (!cell.failure.empty()) cell.runs.clear();
-  }
   return cells;
 }
 
