@@ -1,6 +1,7 @@
 #include "app/commands/command.h"
 
 #include <string>
+#include <system_error>
 
 #include "app/frames/frame_painter.h"
 #include "engine/base/text.h"
@@ -40,6 +41,16 @@ Status check_is_not_source(const std::filesystem::path& out, const std::filesyst
   std::error_code ignored;
   if (!std::filesystem::equivalent(source, out, ignored)) return {};
   return Error{ErrorCode::inconsistent, out.string() + ": is the source itself; choose another name", option};
+}
+
+Status make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (!std::filesystem::is_directory(folder)) {
+    return Error{ErrorCode::unwritable,
+                 folder.string() + ": the folder cannot be made: " + failure.message()};
+  }
+  return {};
 }
 
 void add_log_option(OptionSet parser, std::filesystem::path& log) {

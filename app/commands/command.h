@@ -70,6 +70,9 @@ Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 Status check_is_not_source(const std::filesystem::path& out, const std::filesystem::path& source,
                            const std::string& option);
 
+// Makes the folder of a command's outputs and those above it, unless they exist.
+Status make_folder(const std::filesystem::path& folder);
+
 // --log: the file of a RunLog.
 void add_log_option(OptionSet parser, std::filesystem::path& log);
 

@@ -57,21 +57,10 @@ std::vector<std::filesystem::path> list_bundled_hands() {
   return files;
 }
 
-Status make_output_folder(const std::filesystem::path& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (!problem) return {};
-  return Error{ErrorCode::unwritable, folder.string() + ": the folder cannot be made: " + problem.message()};
-}
-
 Result<ComparisonPlan> make_comparison_plan(const CompareOptions& options) {
   ComparisonPlan plan;
-  auto script = read_script(options.script);
+  auto script = read_task_script(options.script);
   if (!script) return script.error();
-  if (!script->commands.empty()) {
-    return Error{ErrorCode::unsupported,
-                 script->commands.front().origin + ": a task has no commands; only motions steer it"};
-  }
   plan.script_file = options.script;
   plan.script = std::move(script).value();
   plan.task = options.task;
@@ -106,7 +95,7 @@ Status compare(const CompareOptions& options, Console& console) {
   }
   const auto plan = make_comparison_plan(options);
   if (!plan) return plan.error();
-  if (Status made = make_output_folder(options.out); !made) return made;
+  if (Status made = make_folder(options.out); !made) return made;
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   InterruptWatch interrupt;
   ProgressBar progress(console, "Comparing", false);

@@ -52,16 +52,6 @@ Error stopped_study(const std::filesystem::path& out, std::size_t cases) {
                                     out.string() + "; the same command goes on from there"};
 }
 
-Status make_folder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (!std::filesystem::is_directory(folder)) {
-    return Error{ErrorCode::unwritable,
-                 folder.string() + ": the folder cannot be made: " + failure.message()};
-  }
-  return {};
-}
-
 int count_workers(const StudyOptions& options) {
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return options.workers > 0 ? options.workers : processors;

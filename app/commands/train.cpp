@@ -52,12 +52,8 @@ struct Performance {
 
 Result<Performance> read_script_of_task(const TrainOptions& options) {
   Performance performance;
-  auto script = read_script(options.script);
+  auto script = read_task_script(options.script);
   if (!script) return script.error();
-  if (!script->commands.empty()) {
-    return Error{ErrorCode::unsupported,
-                 script->commands.front().origin + ": a task has no commands; only motions steer it"};
-  }
   performance.script = std::move(script).value();
   return performance;
 }
@@ -100,7 +96,7 @@ Status start_device(const TrainOptions& options, const Json& identity, Performan
   return {};
 }
 
-// Returns the bundled file with this name in "name"; empty if there is none.
+// Returns the bundled hand of this name; an empty path if the program has no such hand.
 std::filesystem::path find_bundled_hand(const std::string& name) {
   std::error_code ignored;
   const auto folder = std::filesystem::path(assets_folder) / "hands";
@@ -163,8 +159,7 @@ void add_names(const TrainingSetting& setting, FactSheet& facts) {
   if (setting.task.has_spoon()) {
     facts.add("Spoon", setting.identity["spoon"].get<std::string>(), "spoon", setting.identity["spoon"]);
   }
-  facts.add("Hand", setting.hand.name.empty() ? "not modelled" : setting.hand.name, "hand",
-            setting.hand.name);
+  facts.add("Hand", name_of_hand(setting.hand.name), "hand", setting.hand.name);
   facts.add("Guidance", percent_text(setting.guidance), "guidance", setting.guidance);
 }
 

@@ -79,11 +79,11 @@ Status show_progress(const std::string& person, const std::filesystem::path& pag
   Json all = Json::array();
   for (const Attempt& attempt : logged->attempts) {
     all.push_back(attempt_to_json(attempt));
-    const std::string hand = attempt.hand.empty() ? "not modelled" : attempt.hand;
     facts.add(attempt.date,
-              attempt.task + (attempt.spoon.empty() ? "" : ", " + attempt.spoon) + ", " + hand + ": " +
-                  task_end_names[static_cast<std::size_t>(attempt.end)] + ", score " +
-                  decimals_text(attempt.score, 0) + ", " + decimals_text(attempt.time_s, 1) + " s",
+              attempt.task + (attempt.spoon.empty() ? "" : ", " + attempt.spoon) + ", " +
+                  name_of_hand(attempt.hand) + ": " + task_end_names[static_cast<std::size_t>(attempt.end)] +
+                  ", score " + decimals_text(attempt.score, 0) + ", " + decimals_text(attempt.time_s, 1) +
+                  " s",
               "", nullptr);
   }
   facts.add("Attempts", std::to_string(all.size()), "attempts", all);

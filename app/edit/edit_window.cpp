@@ -88,6 +88,21 @@ Result<Image> EditWindow::end_frame_as_picture(const Snapshot& snapshot, const V
   return picture;
 }
 
+Pointer read_pointer() {
+  const ImGuiIO& io = ImGui::GetIO();
+  Pointer pointer;
+  pointer.position_px = {io.MousePos.x, io.MousePos.y};
+  pointer.moved_px = {io.MouseDelta.x, io.MouseDelta.y};
+  pointer.wheel = io.MouseWheel;
+  pointer.left = io.MouseDown[0];
+  pointer.right = io.MouseDown[1];
+  pointer.middle = io.MouseDown[2];
+  pointer.ctrl = io.KeyCtrl;
+  pointer.shift = io.KeyShift;
+  pointer.alt = io.KeyAlt;
+  return pointer;
+}
+
 Result<FrameLog> FrameLog::open(const std::filesystem::path& file) {
   std::ofstream out(file, std::ios::trunc);
   if (!out) {

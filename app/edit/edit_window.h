@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/edit/mouse.h"
 #include "app/panel/interface_context.h"
 #include "engine/base/result.h"
 #include "render/gl/glfw_window.h"
@@ -61,6 +62,9 @@ class EditWindow {
   double scale_;
   std::optional<double> chosen_scale_;
 };
+
+// Returns the state of the mouse in this frame, as the interface has it.
+Pointer read_pointer();
 
 // State of the editor in a frame. Each member is written to the log under its own name; a line of the log
 // also has the number of the frame.

@@ -439,21 +439,6 @@ void Editor::send(Request request) {
   messages_.add_problem("The haptic thread is busy: try again");
 }
 
-Pointer Editor::read_pointer() const {
-  const ImGuiIO& io = ImGui::GetIO();
-  Pointer pointer;
-  pointer.position_px = {io.MousePos.x, io.MousePos.y};
-  pointer.moved_px = {io.MouseDelta.x, io.MouseDelta.y};
-  pointer.wheel = io.MouseWheel;
-  pointer.left = io.MouseDown[0];
-  pointer.right = io.MouseDown[1];
-  pointer.middle = io.MouseDown[2];
-  pointer.ctrl = io.KeyCtrl;
-  pointer.shift = io.KeyShift;
-  pointer.alt = io.KeyAlt;
-  return pointer;
-}
-
 void Editor::handle_keys(const LiveFrame& frame) {
   const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
   const bool is_asking = is_question_open();

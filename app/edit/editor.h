@@ -78,7 +78,6 @@ class Editor {
   ViewSettings view_settings(double top_px) const;
 
   // The following functions handle the user's input.
-  Pointer read_pointer() const;
   void handle_keys(const LiveFrame& frame);
   void handle_pointer(const LiveFrame& frame, double seconds);
   void drag_setting(const Pointer& pointer, const LiveFrame& frame);

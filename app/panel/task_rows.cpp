@@ -82,7 +82,7 @@ void add_hand_rows(const HandModel& hand, const TrainingFacts& facts, TaskRows& 
 TaskRows make_task_rows(const Task& task, const HandModel& hand, const TrainingFacts& facts) {
   TaskRows rows;
   rows.note = task.note;
-  rows.hand_name = hand.name.empty() ? "not modelled" : hand.name;
+  rows.hand_name = name_of_hand(hand.name);
   add_goal_rows(task, facts, rows);
   if (task.has_spoon()) {
     const double pitch_rad =

@@ -77,7 +77,7 @@ std::string attempts_part(const std::vector<Attempt>& attempts) {
                    "path, mm", "smoothness", "tremor, mm", "wrist used, %", "grip used, %", "force, N"});
   for (const Attempt& attempt : attempts) {
     table.row().text(attempt.date).text(attempt.task).text(attempt.spoon);
-    table.text(attempt.hand.empty() ? "not modelled" : attempt.hand).number(100.0 * attempt.guidance, 0);
+    table.text(name_of_hand(attempt.hand)).number(100.0 * attempt.guidance, 0);
     table.text(task_end_names[static_cast<std::size_t>(attempt.end)]).number(attempt.score, 0);
     table.number(attempt.time_s, 1).number(100.0 * attempt.food_lost_fraction, 1);
     table.number(1e3 * attempt.path_m, 0).number(attempt.smoothness, 2).number(1e3 * attempt.tremor_m, 2);

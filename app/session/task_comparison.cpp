@@ -97,10 +97,6 @@ Result<std::vector<HandModel>> read_compared_hands(const std::vector<std::filesy
 
 }  // namespace
 
-std::string name_of_hand(const std::string& hand) {
-  return hand.empty() ? "not modelled" : hand;
-}
-
 int ComparedCell::success_count() const {
   return static_cast<int>(std::count_if(runs.begin(), runs.end(), [](const ComparedRun& run) {
     return run.failure.empty() && run.result.end == TaskEnd::success;

@@ -26,9 +26,6 @@ struct ComparisonPlan {
   InstructionSet instruction_set = best_instruction_set();
 };
 
-// Returns the name of a hand in reports: "not modelled" for an empty one.
-std::string name_of_hand(const std::string& hand);
-
 // A run that has ended. Plain data.
 struct ComparedRun {
   std::uint32_t seed = 1;

@@ -23,6 +23,13 @@ Document TrainingSetting::document() const {
   return {task.name, scene.scene, task_view(task)};
 }
 
+Result<Script> read_task_script(const std::filesystem::path& file) {
+  auto script = read_script(file);
+  if (!script || script->commands.empty()) return script;
+  return Error{ErrorCode::unsupported,
+               script->commands.front().origin + ": a task has no commands; only motions steer it"};
+}
+
 Result<TrainingSetting> read_training_setting(const TrainingChoice& choice) {
   auto task = read_task(choice.task);
   if (!task) return task.error();

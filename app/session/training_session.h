@@ -11,6 +11,7 @@
 #include "app/training/training_scene.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
+#include "haptic/script.h"
 
 namespace spoonbill {
 
@@ -36,6 +37,9 @@ struct TrainingSetting {
   // Returns the document that a recording of the session has, with a view of all of the task.
   Document document() const;
 };
+
+// Reads a script that steers a task. Refuses one with commands.
+Result<Script> read_task_script(const std::filesystem::path& file);
 
 // Reads the files. Errors are those of read_task(), read_hand() and make_training_scene().
 Result<TrainingSetting> read_training_setting(const TrainingChoice& choice);

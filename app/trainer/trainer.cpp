@@ -125,6 +125,7 @@ Status Trainer::run() {
 // Prepares the next attempt on another thread, because laying the food takes seconds.
 void Trainer::prepare() {
   stage_ = Stage::preparing;
+  live_.reset();  // before the next session needs memory
   TrainingChoice choice = settings_.choice;
   choice.seed += static_cast<std::uint32_t>(attempt_count_);
   if (settings_.choose_guidance) choice.guidance = settings_.choose_guidance();
@@ -143,7 +144,6 @@ void Trainer::prepare() {
 Status Trainer::adopt_prepared() {
   auto prepared = preparing_.get();
   if (!prepared) return prepared.error();
-  live_.reset();
   const bool is_first = !setting_;
   setting_ = std::move(prepared->setting);
   session_ = std::move(prepared->session);
@@ -334,15 +334,8 @@ void Trainer::follow_attempt(double seconds) {
 
 void Trainer::move_hand(double seconds) {
   const ImGuiIO& io = ImGui::GetIO();
-  Pointer pointer;
-  pointer.position_px = {io.MousePos.x, io.MousePos.y};
-  pointer.moved_px = {io.MouseDelta.x, io.MouseDelta.y};
-  pointer.wheel = io.MouseWheel + io.MouseWheelH;  // some systems turn the wheel with Shift sideways
-  pointer.left = io.MouseDown[0];
-  pointer.right = io.MouseDown[1];
-  pointer.ctrl = io.KeyCtrl;
-  pointer.shift = io.KeyShift;
-  pointer.alt = io.KeyAlt;
+  Pointer pointer = read_pointer();
+  pointer.wheel += io.MouseWheelH;  // some systems turn the wheel with Shift sideways
   const bool is_over_picture = !io.WantCaptureMouse && std::isfinite(io.MousePos.x) && io.MousePos.x >= 0.0F;
   const ViewSettings view = find_view();
   const Viewport viewport = make_viewport(window_.width_px(), window_.height_px(), view.panel_px);

@@ -97,7 +97,7 @@ class Trainer {
   std::future<Result<Prepared>> preparing_;
   std::optional<TrainingSetting> setting_;  // of the attempt that is shown; empty before the first
   std::unique_ptr<Session> session_;        // until the attempt begins
-  std::unique_ptr<LiveSession> live_;       // while the attempt runs, and until the next is prepared
+  std::unique_ptr<LiveSession> live_;       // while the attempt runs, and until the next is asked for
   LiveFrame shown_;                         // newest state of the attempt
   Framing framing_;
   ViewChoice view_;

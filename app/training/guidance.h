@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-// Strength of the guidance: 0 is none, 1 the full force.
+// Strength of the guidance: 0 switches it off, 1 gives the full force.
 inline constexpr Range<double> guidance_range{0.0, 1.0};
 
 // A force toward the nearest point of a line, that grows with the distance up to a limit:

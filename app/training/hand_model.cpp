@@ -118,6 +118,10 @@ Result<HandModel> read_hand(const std::filesystem::path& file, std::optional<dou
   return hand_from_json(json.value(), file.string(), severity);
 }
 
+std::string name_of_hand(const std::string& hand) {
+  return hand.empty() ? "not modelled" : hand;
+}
+
 double held_across_nm(const GripModel& grip) {
   const double friction_n = grip.friction * grip.force_n;
   return grip.kind == GripKind::fist ? friction_n * grip.breadth_m / 3.0

@@ -68,6 +68,9 @@ Result<HandModel> read_hand(const std::filesystem::path& file, std::optional<dou
 Result<HandModel> hand_from_json(const Json& json, const std::string& source,
                                  std::optional<double> severity = {});
 
+// Returns the name of a hand in reports: "not modelled" for an empty one.
+std::string name_of_hand(const std::string& hand);
+
 // Returns the largest torque that a grip holds across and about a handle of a width, N m.
 double held_across_nm(const GripModel& grip);
 double held_about_nm(const GripModel& grip, double width_m);

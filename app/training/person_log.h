@@ -67,7 +67,7 @@ class PersonLog {
   // Returns all attempts; none if there is no log.
   Result<LoggedAttempts> read() const;
 
-  // Deletes the log. ErrorCode::missing if there is none. Refuses a file that is not a log of this person.
+  // Deletes the log. ErrorCode::missing without a log. Refuses a file that is not a log of this person.
   Status forget() const;
 
   const std::filesystem::path& file() const { return file_; }
