@@ -25,8 +25,8 @@ const Vector3 up = Vector3::UnitY();
 constexpr std::size_t food_index = 0, spoon_index = 1;  // in the scene
 constexpr double laying_gap_m = 0.3e-3;
 constexpr double lowering_speed_m_per_s = 0.02;
-// Cells along the shortest side of the food, by the refinement of its lattice.
-constexpr int cells_across[] = {5, 6, 7};
+// Cells along the shortest side of the food whose lattice is not refined.
+constexpr int usual_cells_across = 5;
 
 template <class Named>
 const Named& find_named(const std::vector<Named>& list, const std::string& name) {
@@ -84,7 +84,7 @@ Body make_food(const StudyFood& food, const StudyCase& study_case) {
   body.material.friction = study_case.friction;
   body.material.youngs_modulus_pa *= study_case.stiffness;
   const Vector3 size_m = bounding_box(body.surface.net).extent();
-  const double cell_m = size_m.minCoeff() / cells_across[study_case.refinement];
+  const double cell_m = size_m.minCoeff() / (usual_cells_across + study_case.refinement);
   body.lattice = {};
   body.lattice.cells = LatticeCells::box;
   std::array<int, 3> counts{};

@@ -23,7 +23,7 @@ struct StudyCase {
   double tilt_deg = 0.0;       // turn of the spoon with the food in it
   bool is_laid_after = false;  // whether the food is laid in after the tilt instead of before
   int step_division = 1;       // Sculpting::step_division
-  int refinement = 0;          // of the food's lattice: 0 usual, 1 finer, 2 finest
+  int refinement = 0;          // cells that the food's lattice has more than usual along its shortest side
   friend bool operator==(const StudyCase&, const StudyCase&) = default;
 };
 

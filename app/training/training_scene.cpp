@@ -15,6 +15,8 @@ namespace {
 const Vector3 up = Vector3::UnitY();
 constexpr double shortest_handle_m = 0.02;
 constexpr double gripped_fraction = 1.0 / 3.0;  // of the handle's length, from its end
+// A coarser lattice than that of a study leaves time for drawing beside the ticks.
+constexpr int food_refinement = -1;
 // The hand gives way as the force of a usual device does, so that the device can render its spring.
 constexpr HandSpring training_spring{700.0, 3.0};
 
@@ -66,6 +68,7 @@ Result<Scene> lay_on(const Task& task, const StudySpoon& bearer) {
   laid.spoon = bearer.name;
   laid.food = task.food.name;
   laid.friction = task.friction;
+  laid.refinement = food_refinement;
   auto scene = make_case_scene(plan, laid);
   if (!scene) return scene.error().in(bearer.file.string());
   return scene;

@@ -221,8 +221,8 @@ void kick_rigid_bodies(const Relaxation& relaxation, const Substep& substep) {
     const HoldTarget target =
         find_hold_target(*relaxed.rigid_motion, dynamics->mass().centre_m,
                          static_cast<double>(substep.index) / substep.count, relaxation.time_s);
-    dynamics->kick(relaxation.view[at], static_cast<double>(substep.h), relaxed.gravity_m_per_s2,
-                   relaxation.drag_per_s[at], relaxed.hand, target);
+    dynamics->kick(static_cast<double>(substep.h), relaxed.gravity_m_per_s2, relaxation.drag_per_s[at],
+                   relaxed.hand, target);
   }
 }
 

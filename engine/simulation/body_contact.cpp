@@ -385,16 +385,26 @@ double find_cell_m(const BodyState& first, const BodyState& second) {
   return std::max(size_of_cells(first), size_of_cells(second));
 }
 
+// Returns the sum of how far any points of two bodies, or of the same body, move in a tick.
+double find_motion_m(const BodyState& first, const BodyState& second) {
+  return tick_s * (first.fastest_m_per_s() + second.fastest_m_per_s());
+}
+
+// Returns a bound of how far points of two bodies approach each other in a tick at their present velocities.
+double find_steady_approach_m(const BodyState& first, const BodyState& second) {
+  const NodeSpeeds one = first.lattice.find_node_speeds(), other = second.lattice.find_node_speeds();
+  const double speed_m_per_s = (one.mean_m_per_s - other.mean_m_per_s).norm() +
+                               one.fastest_from_mean_m_per_s + other.fastest_from_mean_m_per_s;
+  return std::min(tick_s * speed_m_per_s, find_motion_m(first, second));
+}
+
 // Returns a bound of how far points of two bodies, or of the same body, approach each other in a tick. Bodies
 // that fall side by side approach each other only if something stops one of them; this is found in the next
 // tick, before they are a cell deep.
 double find_approach_m(const BodyState& first, const BodyState& second, double cell_m) {
-  const double moved_m = tick_s * (first.fastest_m_per_s() + second.fastest_m_per_s());
+  const double moved_m = find_motion_m(first, second);
   if (moved_m <= cell_m) return moved_m;  // the other bound is a cell or more
-  const NodeSpeeds one = first.lattice.find_node_speeds(), other = second.lattice.find_node_speeds();
-  const double speed_m_per_s = (one.mean_m_per_s - other.mean_m_per_s).norm() +
-                               one.fastest_from_mean_m_per_s + other.fastest_from_mean_m_per_s;
-  return std::min(tick_s * speed_m_per_s + cell_m, moved_m);
+  return std::min(find_steady_approach_m(first, second) + cell_m, moved_m);
 }
 
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
@@ -484,8 +494,9 @@ constexpr double fast_approach_cells = 0.1;
 
 int BodyPairContact::choose_tick_parts(const BodyState& first, const BodyState& second) const {
   const double cell_m = find_cell_m(first, second);
-  const double approach_m = find_approach_m(first, second, cell_m);
-  if (!(least_gap_m() < approach_m)) return 1;
+  if (!(least_gap_m() < find_approach_m(first, second, cell_m))) return 1;
+  // A body that is carried approaches its bearer only if it moves on it.
+  const double approach_m = find_steady_approach_m(first, second);
   int parts = 1;
   while (parts < tick_parts_limit && approach_m > parts * approach_limit_cells * cell_m) parts *= 2;
   return parts;

@@ -363,6 +363,16 @@ void BodyMapping::update(const SpringLattice& lattice) {
   for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 
+void BodyMapping::place(const Pose& pose) {
+  placed_ = pose;
+  const Eigen::Matrix3d turn = pose.orientation.toRotationMatrix();
+  for (int i = 0; i < rest_.net.rows; ++i) {
+    for (int j = 0; j < rest_.net.columns; ++j) {
+      current_.net.set_point(i, j, pose.position_m + turn * rest_.net.point(i, j));
+    }
+  }
+}
+
 std::array<double, 2> BodyMapping::element_lengths_m(double u, double v) const {
   const auto ends_of = [](const KnotVector& knots, double parameter) {
     const std::vector<double>& extended = knots.extended_knots();

@@ -66,6 +66,8 @@ class BodyMapping {
 
   // Moves current() by the nodes' displacement since make().
   void update(const SpringLattice& lattice);
+  // Puts the rest shape at a pose. Call this instead of update() for a rigid body. Allocates nothing.
+  void place(const Pose& pose);
 
   // A mapping starts with the shape of current(). If the lattice has moved away from this shape, the surface
   // then catches up in catch_up_ticks calls of catch_up(), one a tick. finish_catching_up() ends this at
@@ -107,10 +109,11 @@ class BodyMapping {
   // sample's own index.
   int find_twin(int row, int column) const;
   // embedded_rest_m() returns the position of a sample's embedded point in the undeformed lattice, m.
-  // embedded_m() returns its position at the last make() or update(), m. This position differs from that of
-  // the sample on current() by what the control net cannot reproduce.
+  // embedded_m() returns its position at the last make(), update() or place(), m. This position differs from
+  // that of the sample on current() by what the control net cannot reproduce.
   const Vector3& embedded_rest_m(int index) const { return embedded_rest_m_[index]; }
   Vector3 embedded_m(int index) const {
+    if (placed_) return placed_->position_m + placed_->orientation * embedded_rest_m_[index];
     const std::size_t from = static_cast<std::size_t>(index) / columns_ * stride_ + index % columns_;
     const float* const base = base_moves_.data() + 4 * static_cast<std::size_t>(index);
     const Vector3 base_m(base[0], base[1], base[2]);
@@ -136,6 +139,7 @@ class BodyMapping {
 
   InstructionSet set_;
   Surface rest_, base_, current_;
+  std::optional<Pose> placed_;  // pose at the last place(); empty for a body that deforms
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   double contact_cell_m_ = 0.0, contact_spacing_m_ = 0.0;

@@ -110,9 +110,12 @@ struct BodyState {
   // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
   double fastest_m_per_s() const { return lattice.fastest_m_per_s(); }
 
-  // Updates the skin to the present displacements of the lattice.
+  // Updates the skin to the present displacements of the lattice, or to the pose of a rigid body.
   void update_skin() {
-    std::visit([this](auto& mapping) { mapping.update(lattice); }, skin);
+    const auto update = [this](auto& mapping) {
+      rigid ? mapping.place(rigid->pose()) : mapping.update(lattice);
+    };
+    std::visit(update, skin);
   }
 };
 

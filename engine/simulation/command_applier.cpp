@@ -174,7 +174,8 @@ Status CommandApplier::operator()(const KeepShape&) {
 Status CommandApplier::operator()(const RefineKnots& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t index = static_cast<std::size_t>(command.body);
-  if (!state.bodies[index].mesh()) state.bodies[index].mapping().measure_residual();
+  if (!state.bodies[index].mesh() && !state.bodies[index].rigid)
+    state.bodies[index].mapping().measure_residual();
   Result<PreparedRefinement> prepared = prepare_refinement(
       command, state.bodies, {find_contact_scene(state.scene), state.scene.planes, state.model});
   if (!prepared.ok()) return prepared.error();

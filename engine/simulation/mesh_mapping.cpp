@@ -86,6 +86,13 @@ void MeshMapping::update(const SpringLattice& lattice) {
   current_.refit();
 }
 
+void MeshMapping::place(const Pose& pose) {
+  const Eigen::Matrix3d turn = pose.orientation.toRotationMatrix();
+  std::vector<Vector3>& vertices = current_.mutable_vertices_m();
+  for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v] = pose.position_m + turn * rest_m_[v];
+  current_.refit();
+}
+
 EmbeddedPoint MeshMapping::vertex(std::uint32_t vertex) const {
   const CellWeights& cell = embedding_[vertex];
   EmbeddedPoint point;

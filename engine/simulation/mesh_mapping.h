@@ -14,7 +14,7 @@
 namespace spoonbill {
 
 // Mapping to a mesh whose vertices are embedded in a box lattice or in the frame of a rigid body.
-// Owned by the simulation. update() allocates nothing.
+// Owned by the simulation. update() and place() allocate nothing.
 class MeshMapping {
  public:
   // `lattice` is a box_lattice() or a rigid_frame() about the mesh, at rest. DeformingMesh states what the
@@ -35,6 +35,8 @@ class MeshMapping {
 
   // Moves current() with the nodes.
   void update(const SpringLattice& lattice);
+  // Puts the rest shape at a pose. Call this instead of update() for a rigid body.
+  void place(const Pose& pose);
 
   // Returns the mapping whose rest shape is the present one. `lattice` is at rest there.
   MeshMapping rebased(const SpringLattice& lattice) const;

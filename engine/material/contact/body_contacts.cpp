@@ -88,6 +88,12 @@ PointMobility find_mobility(const BodyPoint& point) {
   return found;
 }
 
+// Returns the position of a point of a rigid body that contacts can move, when the body is at rest; zero for
+// any other point.
+Vector3 find_rest_m(const BodyPoint& point) {
+  return is_of_moving_frame(point) ? point.point.rest_m(*point.lattice) : Vector3(Vector3::Zero());
+}
+
 Vector3 displacement_m(const BodyPoint& point) {
   return point.lattice == nullptr ? Vector3(Vector3::Zero()) : point.point.displacement_m(*point.lattice);
 }
@@ -193,6 +199,8 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
        .second_body = second.body,
        .first = first.point,
        .second = second.point,
+       .first_rest_m = find_rest_m(first),
+       .second_rest_m = find_rest_m(second),
        .normal = normal,
        .compliance = compliance,
        .base_m = gap_m - difference_m - moved,
@@ -292,36 +300,63 @@ bool BodyContacts::has_constraint_between_solvers() const {
                      [](const Constraint& constraint) { return constraint.moved_by == MovedBy::solvers; });
 }
 
+Vector3 BodyContacts::Side::displacement_m() const {
+  return view.rigid ? view.rigid->displacement_m(rest_m) : point.displacement_m(view);
+}
+
+Vector3 BodyContacts::Side::velocity_m_per_s() const {
+  return view.rigid ? view.rigid->velocity_m_per_s(view.rigid->arm_m(rest_m)) : point.velocity_m_per_s(view);
+}
+
+void BodyContacts::Side::push(const Vector3& impulse_ns) const {
+  view.rigid ? view.rigid->push(view.rigid->arm_m(rest_m), impulse_ns) : point.push(view, impulse_ns);
+}
+
+void BodyContacts::Side::shift(const Vector3& impulse_ns, double time_s) const {
+  view.rigid ? view.rigid->shift(view, view.rigid->arm_m(rest_m), impulse_ns, time_s)
+             : point.shift(view, impulse_ns, time_s);
+}
+
+BodyContacts::Side BodyContacts::first_side(std::span<const LatticeView> lattices,
+                                            const Constraint& constraint) {
+  return {view_of(lattices, constraint.first_body), constraint.first, constraint.first_rest_m};
+}
+
+BodyContacts::Side BodyContacts::second_side(std::span<const LatticeView> lattices,
+                                             const Constraint& constraint) {
+  return {view_of(lattices, constraint.second_body), constraint.second, constraint.second_rest_m};
+}
+
 double BodyContacts::find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint) {
-  const Vector3 apart = constraint.first.displacement_m(view_of(lattices, constraint.first_body)) -
-                        constraint.second.displacement_m(view_of(lattices, constraint.second_body));
+  const Vector3 apart =
+      first_side(lattices, constraint).displacement_m() - second_side(lattices, constraint).displacement_m();
   return constraint.base_m + constraint.normal.dot(apart);
 }
 
 Vector3 BodyContacts::find_relative_m_per_s(std::span<const LatticeView> lattices,
                                             const Constraint& constraint) {
-  return constraint.first.velocity_m_per_s(view_of(lattices, constraint.first_body)) -
-         constraint.second.velocity_m_per_s(view_of(lattices, constraint.second_body));
+  return first_side(lattices, constraint).velocity_m_per_s() -
+         second_side(lattices, constraint).velocity_m_per_s();
 }
 
 void BodyContacts::find_response(std::span<const LatticeView> lattices, Constraint& constraint) {
-  const LatticeView& first = view_of(lattices, constraint.first_body);
-  const LatticeView& second = view_of(lattices, constraint.second_body);
+  const Side first = first_side(lattices, constraint), second = second_side(lattices, constraint);
   double along_per_kg = 0.0, across_per_kg = 0.0;
-  const auto add_response_of = [&](const LatticeView& view, const EmbeddedPoint& point,
-                                   PointMobility& mobility) {
-    if (view.rigid == nullptr) return;
-    const Vector3 at_m = point.offset_m(*view.rigid);
-    along_per_kg += view.rigid->compliance(at_m, constraint.normal);
-    across_per_kg += view.rigid->slide_compliance(at_m, constraint.normal);
-    mobility = {view.rigid->largest_compliance(), 1.0};
+  const auto add_response_of = [&](const Side& side, PointMobility& mobility) {
+    const RigidDynamics* const rigid = side.view.rigid;
+    if (rigid == nullptr) return;
+    const Vector3 arm_m = rigid->arm_m(side.rest_m);
+    along_per_kg += rigid->compliance(arm_m, constraint.normal);
+    across_per_kg += rigid->slide_compliance(arm_m, constraint.normal);
+    mobility = {rigid->largest_compliance(), 1.0};
   };
-  add_response_of(first, constraint.first, constraint.first_mobility);
-  add_response_of(second, constraint.second, constraint.second_mobility);
-  const double of_frames_per_kg = mutual_frame_compliance(first, second);
+  add_response_of(first, constraint.first_mobility);
+  add_response_of(second, constraint.second_mobility);
+  const double of_frames_per_kg = mutual_frame_compliance(first.view, second.view);
   constraint.shift_per_kg = constraint.compliance + along_per_kg;
   constraint.normal_per_kg = constraint.shift_per_kg + of_frames_per_kg;
   constraint.slide_per_kg = constraint.compliance + across_per_kg + of_frames_per_kg;
+  constraint.has_response = true;
 }
 
 std::array<double, lattice_capacity> BodyContacts::find_impacts_m_per_s(std::span<const LatticeView> lattices,
@@ -345,8 +380,10 @@ void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
     if (constraint.moved_by != MovedBy::springs) continue;
     constraint.gap_m = find_gap_m(lattices, constraint);
     constraint.spare_m_per_s = -infinity;
-    find_response(lattices, constraint);
-    if (constraint.force_n.isZero(0.0) && constraint.known_force_n.isZero(0.0)) continue;
+    const bool has_force = !constraint.force_n.isZero(0.0) || !constraint.known_force_n.isZero(0.0);
+    constraint.has_response = false;
+    if (has_force || constraint.is_implicit()) find_response(lattices, constraint);
+    if (!has_force) continue;
     push(lattices, constraint, h_s * constraint.force_n, h_s * constraint.known_force_n);
   }
   changed_m_per_s_.fill(0.0);
@@ -362,11 +399,9 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
                         const Vector3& known_ns) {
   const auto first = static_cast<std::size_t>(constraint.first_body);
   const auto second = static_cast<std::size_t>(constraint.second_body);
-  const LatticeView& one = view_of(lattices, constraint.first_body);
-  const LatticeView& other = view_of(lattices, constraint.second_body);
-  constraint.first.push(one, constraint.is_first_implicit ? Vector3(impulse - known_ns) : impulse);
-  constraint.second.push(other,
-                         constraint.is_second_implicit ? Vector3(known_ns - impulse) : Vector3(-impulse));
+  const Side one = first_side(lattices, constraint), other = second_side(lattices, constraint);
+  one.push(constraint.is_first_implicit ? Vector3(impulse - known_ns) : impulse);
+  other.push(constraint.is_second_implicit ? Vector3(known_ns - impulse) : Vector3(-impulse));
   if (constraint.moved_by == MovedBy::springs) {
     if (constraint.second_body == ground_index) {
       ground_impulse_ns_[first] += impulse;
@@ -376,8 +411,9 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
       constraint.impulse_ns += impulse;
     }
     const double size_ns = impulse.norm();
-    changed_m_per_s_[first] += size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(one));
-    changed_m_per_s_[second] += size_ns * (constraint.second_mobility.node_per_kg + frame_compliance(other));
+    changed_m_per_s_[first] += size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(one.view));
+    changed_m_per_s_[second] +=
+        size_ns * (constraint.second_mobility.node_per_kg + frame_compliance(other.view));
   }
   constraint.acted = true;
 }
@@ -401,6 +437,8 @@ bool BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
       find_response(lattices, constraint);
     } else if (!may_act(constraint)) {
       continue;
+    } else if (!constraint.has_response) {
+      find_response(lattices, constraint);
     }
     const double cap = std::min(cap_of(caps, constraint.first_body), cap_of(caps, constraint.second_body));
     has_pushed |= solve(lattices, constraint, pass.h_s, cap);
@@ -421,8 +459,8 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
     const double cap = std::min(cap_of(caps_m_per_s, first), cap_of(caps_m_per_s, second));
     const double speed = std::min(-gap_m * part / h_s, cap);
     const Vector3 impulse = speed / constraint.shift_per_kg * constraint.normal;
-    constraint.first.shift(view_of(lattices, first), impulse, h_s);
-    constraint.second.shift(view_of(lattices, second), -impulse, h_s);
+    first_side(lattices, constraint).shift(impulse, h_s);
+    second_side(lattices, constraint).shift(-impulse, h_s);
   }
 }
 
@@ -456,9 +494,9 @@ void BodyContacts::respond(int body, double fraction, std::span<const LatticeVie
     if (fraction < 1.0) {
       const Vector3 excess_ns = (1.0 - fraction) * (constraint.impulse_ns - constraint.responded_ns);
       if (constraint.first_body == body) {
-        constraint.second.push(view_of(lattices, constraint.second_body), excess_ns);
+        second_side(lattices, constraint).push(excess_ns);
       } else {
-        constraint.first.push(view_of(lattices, constraint.first_body), -excess_ns);
+        first_side(lattices, constraint).push(-excess_ns);
       }
       impulse_ns_[static_cast<std::size_t>(constraint.first_body)] -= excess_ns;
       impulse_ns_[static_cast<std::size_t>(constraint.second_body)] += excess_ns;

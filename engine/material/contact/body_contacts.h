@@ -194,9 +194,11 @@ class BodyContacts {
   struct Constraint {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
+    Vector3 first_rest_m, second_rest_m;  // of the points of rigid bodies that contacts can move
     Vector3 normal = Vector3::UnitY();
     // Relative velocity change of the points per impulse, 1/kg, without frames and rigid bodies.
     double compliance = 0.0;
+    bool has_response = false;  // whether find_response() has been called in the present substep
     // Found by the last find_response():
     double shift_per_kg = 0.0;   // the same with rigid bodies
     double normal_per_kg = 0.0;  // the same with rigid bodies and frames, along the normal
@@ -235,6 +237,19 @@ class BodyContacts {
   static bool is_with_others(const Constraint& constraint, int body);
   // Finds how the bodies of a constraint respond to it in the present substep.
   static void find_response(std::span<const LatticeView> lattices, Constraint& constraint);
+  // One of the two points of a constraint, on a body with a view. That of the ground is empty.
+  struct Side {
+    const LatticeView& view;
+    const EmbeddedPoint& point;
+    const Vector3& rest_m;
+
+    Vector3 displacement_m() const;
+    Vector3 velocity_m_per_s() const;
+    void push(const Vector3& impulse_ns) const;
+    void shift(const Vector3& impulse_ns, double time_s) const;
+  };
+  static Side first_side(std::span<const LatticeView> lattices, const Constraint& constraint);
+  static Side second_side(std::span<const LatticeView> lattices, const Constraint& constraint);
   static double find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint);
   static Vector3 find_relative_m_per_s(std::span<const LatticeView> lattices, const Constraint& constraint);
   // Returns whether the pushes since start() may have made a constraint act that did not act then.

@@ -105,6 +105,7 @@ Vector3 EmbeddedPoint::displacement_m(const LatticeView& lattice) const {
 }
 
 Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
+  if (lattice.rigid) return lattice.rigid->velocity_m_per_s(offset_m(*lattice.rigid));
   const Vector3 relative = embedded_sum(*this, lattice.vx, lattice.vy, lattice.vz);
   return lattice.frame ? Vector3(lattice.frame->velocity_m_per_s + relative) : relative;
 }
@@ -126,7 +127,7 @@ void EmbeddedPoint::shift(const LatticeView& lattice, const Vector3& impulse, do
 }
 
 void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
-  if (lattice.rigid) return lattice.rigid->push(lattice, offset_m(*lattice.rigid), impulse);
+  if (lattice.rigid) return lattice.rigid->push(offset_m(*lattice.rigid), impulse);
   for (int i = 0; i < count; ++i) {
     const int n = node[i];
     const double fraction = static_cast<double>(weight[i]) * static_cast<double>(lattice.inverse_mass[n]);

@@ -92,8 +92,8 @@ Vector3 RigidDynamics::spin_of(const Quaternion& orientation, const Vector3& ang
   return orientation * (inverse_inertia_ * (orientation.conjugate() * angular_momentum)) / scale_;
 }
 
-void RigidDynamics::kick(const LatticeView& view, double h_s, const Vector3& gravity_m_per_s2,
-                         double drag_per_s, const HandSpring* hand, const HoldTarget& target) {
+void RigidDynamics::kick(double h_s, const Vector3& gravity_m_per_s2, double drag_per_s,
+                         const HandSpring* hand, const HoldTarget& target) {
   SPOONBILL_ASSERT_DEBUG(h_s > 0.0);
   const double inertial_kg = scale_ * mass_.mass_kg;
   const Vector3 weight_n = mass_.mass_kg * gravity_m_per_s2;
@@ -103,7 +103,6 @@ void RigidDynamics::kick(const LatticeView& view, double h_s, const Vector3& gra
     spin_rad_per_s_ *= decay;
     inverse_mass_per_kg_ = 1.0 / inertial_kg;
     turn_response_ = inertia_of(pose_.orientation).inverse();
-    set_node_velocities(view);
     return;
   }
   // With a stiffness k and critical damping c, the end velocity v' of a substep obeys
@@ -126,14 +125,12 @@ void RigidDynamics::kick(const LatticeView& view, double h_s, const Vector3& gra
   const Vector3 turn = turn_between(pose_.orientation, target.pose.orientation);
   const Vector3 torque_nm = turn_k * (turn + h_s * target.spin_rad_per_s) + turn_c * target.spin_rad_per_s;
   spin_rad_per_s_ = turn_response_ * (inertia * spin_rad_per_s_ + h_s * torque_nm);
-  set_node_velocities(view);
 }
 
-void RigidDynamics::push(const LatticeView& view, const Vector3& arm_m, const Vector3& impulse_ns) {
+void RigidDynamics::push(const Vector3& arm_m, const Vector3& impulse_ns) {
   velocity_m_per_s_ += inverse_mass_per_kg_ * impulse_ns;
   hand_impulse_ns_ -= (1.0 - scale_ * mass_.mass_kg * inverse_mass_per_kg_) * impulse_ns;
   spin_rad_per_s_ += turn_response_ * arm_m.cross(impulse_ns);
-  set_node_velocities(view);
 }
 
 void RigidDynamics::shift(const LatticeView& view, const Vector3& arm_m, const Vector3& impulse_ns,
@@ -178,19 +175,11 @@ void RigidDynamics::move_centre_to(const Vector3& centre, const Quaternion& orie
 }
 
 void RigidDynamics::place_nodes(const LatticeView& view) {
-  const Matrix3 turn = pose_.orientation.toRotationMatrix();
+  turn_ = pose_.orientation.toRotationMatrix();
   for (std::size_t n = 0; n < nodes_m_.size(); ++n) {
-    offsets_m_[n] = turn * (nodes_m_[n] - mass_.centre_m);
-    const Vector3 moved = pose_.position_m + turn * nodes_m_[n] - nodes_m_[n];
-    set_node_displacement(view, static_cast<int>(n), moved, 0.0f);
-  }
-  set_node_velocities(view);
-}
-
-void RigidDynamics::set_node_velocities(const LatticeView& view) const {
-  for (std::size_t n = 0; n < offsets_m_.size(); ++n) {
-    spoonbill::set_velocity(view, static_cast<int>(n),
-                            velocity_m_per_s_ + spin_rad_per_s_.cross(offsets_m_[n]));
+    offsets_m_[n] = arm_m(nodes_m_[n]);
+    set_node_displacement(view, static_cast<int>(n), displacement_m(nodes_m_[n]), 0.0f);
+    spoonbill::set_velocity(view, static_cast<int>(n), velocity_m_per_s(offsets_m_[n]));
   }
 }
 

@@ -24,10 +24,10 @@ struct HoldTarget {
 // Owned by the simulation's state of the body, and used by the thread that runs the tick. Nothing but the
 // constructor allocates.
 //
-// kick(), push(), shift() and drift() are the parts of a substep. The velocities of the frame's nodes in the
-// view are kept equal to those of the body, so that an embedded point has the velocity of the body there. An
-// impulse at a point, distributed to the nodes by the point's weights, has the same momentum and angular
-// momentum as the impulse itself, because the weights reproduce linear functions.
+// kick(), push(), shift() and drift() are the parts of a substep. Only shift() and drift() set the velocities
+// of the frame's nodes in a view; velocity_m_per_s() is exact at any time. An impulse at a point, distributed
+// to the nodes by the point's weights, has the same momentum and angular momentum as the impulse itself,
+// because the weights reproduce linear functions.
 class RigidDynamics {
  public:
   // `mass` is that of the body at rest, with a positive mass and a positive definite inertia tensor. `frame`
@@ -39,6 +39,10 @@ class RigidDynamics {
   Vector3 centre_m() const { return pose_.position_m + pose_.orientation * mass_.centre_m; }
   const Vector3& velocity_m_per_s() const { return velocity_m_per_s_; }  // of the centre of mass
   const Vector3& spin_rad_per_s() const { return spin_rad_per_s_; }
+  // Returns the velocity of the body at a point with the offset `arm_m` from the centre of mass.
+  Vector3 velocity_m_per_s(const Vector3& arm_m) const {
+    return velocity_m_per_s_ + spin_rad_per_s_.cross(arm_m);
+  }
   // Kinetic and gravitational energy; the gravitational energy is zero at the origin.
   double energy_j(const Vector3& gravity_m_per_s2) const;
   // Impulse of the hand on the body since clear_hand_impulse(), N s.
@@ -60,13 +64,17 @@ class RigidDynamics {
   // Accelerates the body by gravity, and by the hand if there is one, in a substep of h_s. The spring and its
   // damper are implicit in the velocity. `drag_per_s` damps the motion of a free body, without a change of
   // static forces. Call before the contacts are solved.
-  void kick(const LatticeView& view, double h_s, const Vector3& gravity_m_per_s2, double drag_per_s,
-            const HandSpring* hand, const HoldTarget& target);
+  void kick(double h_s, const Vector3& gravity_m_per_s2, double drag_per_s, const HandSpring* hand,
+            const HoldTarget& target);
+  // Returns the offset from the centre of mass, and the displacement, of the point that is at `rest_m` when
+  // the body is at rest, m.
+  Vector3 arm_m(const Vector3& rest_m) const { return turn_ * (rest_m - mass_.centre_m); }
+  Vector3 displacement_m(const Vector3& rest_m) const { return pose_.position_m + turn_ * rest_m - rest_m; }
   // Returns the offset of a node of the frame from the centre of mass, m.
   const Vector3& offset_m(int node) const { return offsets_m_[static_cast<std::size_t>(node)]; }
   // Pushes the body at a point with the offset `arm_m` from the centre of mass. The spring of the hand
   // resists within the substep.
-  void push(const LatticeView& view, const Vector3& arm_m, const Vector3& impulse_ns);
+  void push(const Vector3& arm_m, const Vector3& impulse_ns);
   // Moves the body as an impulse would in `time_s`, without a change of velocity.
   void shift(const LatticeView& view, const Vector3& arm_m, const Vector3& impulse_ns, double time_s);
   // Moves the body at its velocity. Angular momentum is conserved exactly, energy to second order in h_s.
@@ -95,7 +103,6 @@ class RigidDynamics {
   Eigen::Matrix3d inertia_of(const Quaternion& orientation) const;  // about the centre, scaled
   Vector3 spin_of(const Quaternion& orientation, const Vector3& angular_momentum) const;
   void move_centre_to(const Vector3& centre_m, const Quaternion& orientation);
-  void set_node_velocities(const LatticeView& view) const;
   void adopt_frame(const LatticeMesh& frame);
 
   RigidMass mass_;
@@ -106,6 +113,7 @@ class RigidDynamics {
   Vector3 velocity_m_per_s_ = Vector3::Zero(), spin_rad_per_s_ = Vector3::Zero();
   Vector3 hand_impulse_ns_ = Vector3::Zero();
   // The following values are those of the present substep.
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();       // orientation of the body
   std::array<Vector3, 8> offsets_m_;                         // of the nodes from the centre of mass
   double inverse_mass_per_kg_ = 0.0;                         // with the response of the hand
   Eigen::Matrix3d turn_response_ = Eigen::Matrix3d::Zero();  // inverse inertia, with the hand

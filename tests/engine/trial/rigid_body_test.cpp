@@ -134,7 +134,7 @@ TEST(RigidBody, KeepsItsMomentumAndEnergyWhileItTumbles) {
   const double energy_j = kinetic_energy_j(block);
   double largest_tilt = 0.0;
   for (int t = 0; t < 8000; ++t) {
-    block.kick(view, 2.5e-4, Vector3::Zero(), 0.0, nullptr, {});
+    block.kick(2.5e-4, Vector3::Zero(), 0.0, nullptr, {});
     block.drift(view, 2.5e-4);
     largest_tilt = std::max(largest_tilt, 1.0 - (block.pose().orientation * Vector3::UnitZ()).z());
   }
