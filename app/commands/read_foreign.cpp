@@ -41,7 +41,7 @@ Status send_mesh(const std::filesystem::path& file, Console& console) {
 Status send_ply(const std::string& bytes, Console& console) {
   auto content = parse_ply(bytes);
   if (!content) return content.error();
-  if (auto* mesh = std::get_if<PlyMesh>(&content.value())) {
+  if (auto* mesh = std::get_if<FileMesh>(&content.value())) {
     write_mesh(console.out, {std::move(mesh->vertices), std::move(mesh->triangles)});
   } else {
     write_cloud(console.out, std::get<PointCloud>(content.value()));

@@ -139,7 +139,8 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   EXPECT_NEAR(apart["mesh_a"]["size_mm"][1], 20.0, 1e-5);
   EXPECT_NEAR(apart["mesh_b"]["size_mm"][1], 10.0, 1e-5);
   EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
-  EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
+  // An OBJ file numbers its vertices, an STL file repeats them in each triangle.
+  EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 0);
 
   // In centimetres, both meshes are ten times as large. In this pose, they overlap by 10 mm.
   const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});

@@ -9,15 +9,11 @@ namespace spoonbill {
 
 std::span<const FuzzTarget> fuzz_targets() {
   static constexpr FuzzTarget targets[] = {
-      {"document", take_document},
-      {"recording", take_recording},
-      {"script", take_script},
-      {"points", take_points},
-      {"ply", take_ply},
-      {"cad_stream", take_cad_stream},
-      {"values", take_values},
-      {"table", take_table},
-      {"mesh_text", take_mesh_text},
+      {"document", take_document}, {"recording", take_recording},
+      {"script", take_script},     {"points", take_points},
+      {"ply", take_ply},           {"cad_stream", take_cad_stream},
+      {"values", take_values},     {"table", take_table},
+      {"stl", take_stl},           {"obj", take_obj},
   };
   return targets;
 }

@@ -171,7 +171,7 @@ bool is_face(const PlyElement& element) {
 
 // Builder of a mesh from the elements of a file. Polygons are stored until all vertices are read, because the
 // vertices may follow them.
-class PlyMeshBuilder {
+class FileMeshBuilder {
  public:
   Status read_vertices_of(PlyNumbers& numbers, const PlyElement& element) {
     if (element.rows > 0xfffffff0U) return Error{ErrorCode::too_many, "has too many vertices"};
@@ -204,7 +204,7 @@ class PlyMeshBuilder {
     return {};
   }
 
-  Result<PlyMesh> finish() && {
+  Result<FileMesh> finish() && {
     const std::size_t count = mesh_.vertices.size();
     const auto is_beyond = [&](std::uint32_t corner) { return corner >= count; };
     const bool is_wrong =
@@ -290,7 +290,7 @@ class PlyMeshBuilder {
     return {};
   }
 
-  PlyMesh mesh_;
+  FileMesh mesh_;
   std::vector<double> row_;
   std::vector<std::uint32_t> corners_, polygon_corners_;
   std::vector<std::size_t> polygon_sizes_;
@@ -302,9 +302,9 @@ Status check_end(const PlyNumbers& numbers) {
                "has numbers after the last row that its header states; the file is damaged"};
 }
 
-Result<PlyMesh> read_ply_mesh(const PlyHeader& header) {
+Result<FileMesh> read_ply_mesh(const PlyHeader& header) {
   PlyNumbers numbers(header);
-  PlyMeshBuilder builder;
+  FileMeshBuilder builder;
   for (const PlyElement& element : header.elements) {
     Status read = element.name == "vertex" ? builder.read_vertices_of(numbers, element)
                   : is_face(element)       ? builder.read_faces(numbers, element)
@@ -338,7 +338,7 @@ Result<PointCloud> read_ply_cloud(const PlyHeader& header) {
 
 }  // namespace
 
-Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes) {
+Result<std::variant<FileMesh, PointCloud>> parse_ply(std::string_view bytes) {
   const auto header = read_ply_header(bytes);
   if (!header) return header.error();
   const std::vector<PlyElement>& elements = header->elements;
@@ -351,11 +351,11 @@ Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes) {
   if (!has_faces) {
     auto cloud = read_ply_cloud(header.value());
     if (!cloud) return cloud.error();
-    return std::variant<PlyMesh, PointCloud>(std::move(cloud).value());
+    return std::variant<FileMesh, PointCloud>(std::move(cloud).value());
   }
   auto mesh = read_ply_mesh(header.value());
   if (!mesh) return mesh.error();
-  return std::variant<PlyMesh, PointCloud>(std::move(mesh).value());
+  return std::variant<FileMesh, PointCloud>(std::move(mesh).value());
 }
 
 }  // namespace spoonbill

@@ -9,18 +9,10 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
+#include "engine/exchange/scans/file_mesh.h"
 #include "engine/exchange/scans/point_cloud.h"
 
 namespace spoonbill {
-
-// Largest number of corners of one face.
-inline constexpr std::size_t face_corner_limit = 4096;
-
-// Vertices in the file's own unit, and triangles with valid indices. Coordinates may be NaN or infinite.
-struct PlyMesh {
-  std::vector<Vector3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
 
 // Reads a PLY file in text form or in binary form of either byte order. The result is a mesh if the header
 // declares faces or triangle strips, otherwise a cloud with the normals of its vertices. The elements may be
@@ -31,6 +23,6 @@ struct PlyMesh {
 // Refused: what read_ply_header() refuses; vertices without x, y and z; faces without a list of indices; an
 // index without a vertex; a face with more corners than the limit; missing rows, or numbers after the last
 // row.
-Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes);
+Result<std::variant<FileMesh, PointCloud>> parse_ply(std::string_view bytes);
 
 }  // namespace spoonbill

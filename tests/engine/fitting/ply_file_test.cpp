@@ -17,13 +17,13 @@ namespace {
 
 using PlyTriangle = std::array<std::uint32_t, 3>;
 
-PlyMesh ply_mesh(const std::string& bytes) {
+FileMesh ply_mesh(const std::string& bytes) {
   auto content = parse_ply(bytes);
   EXPECT_TRUE(content) << content.error().message << "\n" << bytes.substr(0, 800);
   if (!content) return {};
-  EXPECT_TRUE(std::holds_alternative<PlyMesh>(content.value()));
-  auto* mesh = std::get_if<PlyMesh>(&content.value());
-  return mesh != nullptr ? std::move(*mesh) : PlyMesh();
+  EXPECT_TRUE(std::holds_alternative<FileMesh>(content.value()));
+  auto* mesh = std::get_if<FileMesh>(&content.value());
+  return mesh != nullptr ? std::move(*mesh) : FileMesh();
 }
 
 void expect_ply_refusal(const std::string& bytes, ErrorCode code) {
@@ -47,7 +47,7 @@ TEST(PlyFile, UnknownElementsAreSkippedWhereverTheyAre) {
            {camera + four_vertices + faces + edges, "0.5 640\n" + corner_rows + "3 0 1 2\n2 1 2 9\n"},
            {faces + camera + four_vertices, "3 0 1 2\n0.5 640\n" + corner_rows},
            {edges + faces + four_vertices + camera, "0 7\n3 0 1 2\n" + corner_rows + "1 2\n"}}) {
-    const PlyMesh mesh = ply_mesh(text_ply(elements, rows));
+    const FileMesh mesh = ply_mesh(text_ply(elements, rows));
     EXPECT_EQ(mesh.triangles, std::vector<PlyTriangle>({{0, 1, 2}}));
     ASSERT_EQ(mesh.vertices.size(), 4U);
     EXPECT_EQ(mesh.vertices[2], Vector3(1, 1, 0));
@@ -56,11 +56,11 @@ TEST(PlyFile, UnknownElementsAreSkippedWhereverTheyAre) {
 
 TEST(PlyFile, StripsTurnEverySecondTriangleAndBeginAnew) {
   const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
-  const PlyMesh mesh = ply_mesh(text_ply(four_vertices + strips, corner_rows + "8 0 1 3 2 -1 1 2 0\n"));
+  const FileMesh mesh = ply_mesh(text_ply(four_vertices + strips, corner_rows + "8 0 1 3 2 -1 1 2 0\n"));
   EXPECT_EQ(mesh.triangles, std::vector<PlyTriangle>({{0, 1, 3}, {3, 1, 2}, {1, 2, 0}}));
   // A triangle with a repeated corner is skipped, but counts for the alternating direction of the strip's
   // triangles.
-  const PlyMesh joined = ply_mesh(text_ply(four_vertices + strips, corner_rows + "5 0 1 1 3 2\n"));
+  const FileMesh joined = ply_mesh(text_ply(four_vertices + strips, corner_rows + "5 0 1 1 3 2\n"));
   EXPECT_EQ(joined.triangles, std::vector<PlyTriangle>({{1, 3, 2}}));
 }
 
@@ -74,7 +74,7 @@ TEST(PlyFile, LineEndsAreOfAnySystem) {
   }
 }
 
-double area_of(const PlyMesh& mesh) {
+double area_of(const FileMesh& mesh) {
   double area = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vector3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
@@ -92,7 +92,7 @@ TEST(PlyFile, ConcavePolygonsAreCoveredOnce) {
   for (int trial = 0; trial < effort(40); ++trial) {
     // The polygon is star-shaped and in a tilted plane.
     const int count = random.integer(4, 40);
-    PlyMesh mesh;
+    FileMesh mesh;
     std::vector<std::uint32_t> corners;
     Vector3 area = Vector3::Zero();
     const Vector3 along = Vector3(1, 2, 3).normalized(), across = along.unitOrthogonal();
@@ -177,7 +177,7 @@ class PlySample {
 
   bool is_text() const { return format_ == 0; }
 
-  PlyMesh mesh;
+  FileMesh mesh;
   std::string bytes;
   std::size_t header_bytes = 0;
 
@@ -314,7 +314,7 @@ TEST(PlyFile, GeneratedFilesAreReadAsTheyWereMade) {
   for (int trial = 0; trial < random_cases(400, 20'000); ++trial) {
     SCOPED_TRACE(trial);
     const PlySample sample(random);
-    const PlyMesh mesh = ply_mesh(sample.bytes);
+    const FileMesh mesh = ply_mesh(sample.bytes);
     ASSERT_EQ(mesh.vertices, sample.mesh.vertices) << sample.bytes.substr(0, sample.header_bytes);
     ASSERT_EQ(mesh.triangles, sample.mesh.triangles) << sample.bytes.substr(0, sample.header_bytes);
     if (sample.is_text()) {
