@@ -32,7 +32,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> new_control_range{4, control_point_count_range.high};
+constexpr Range<int> new_control_range{4, sculpted_control_point_count_range.high};
 constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
 // Range that the parser allows for all sizes. Each shape checks a narrower range of its own.
 constexpr Range<double> size_range_m{-1e3, 1e3};

@@ -14,11 +14,12 @@
 #include "engine/bspline/reparameterise.h"
 #include "engine/inspection/surface_check.h"
 #include "engine/merging/tube_ends.h"
+#include "engine/scene/body.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr int control_points_limit = 200;
+constexpr int control_points_limit = control_point_count_range.high;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
 // Tolerance of a change that is not exact, and the observer that can stop the change.
@@ -165,7 +166,7 @@ Result<ChangedSurfaces> set_degree(const Surface& surface, const ChangeRequest& 
   const auto lower = reduce_degree(knots, request.number);
   if (!lower) return lower.error();
   return approximate_change(approximated(surface, request.direction, lower.value(), allowed.tolerance_m,
-                                         control_points_limit, allowed.progress));
+                                         sculpted_control_point_count_range.high, allowed.progress));
 }
 
 Result<ChangedSurfaces> remove_spare_knots(const Surface& surface, const ChangeRequest&,

@@ -256,7 +256,7 @@ Document starting_document(const std::string& name, Surface surface, const Mater
 Status suit_net_to_tool(Scene& scene) {
   Surface& surface = scene.bodies.front().surface;
   Result<Surface> suited = halve_long_elements(surface, scene.tool.radius_m, refined_control_point_limit,
-                                               control_point_count_range.high);
+                                               sculpted_control_point_count_range.high);
   if (!suited) return suited.error();
   surface = std::move(suited).value();
   return {};

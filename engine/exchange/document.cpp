@@ -21,7 +21,7 @@ namespace spoonbill {
 
 namespace {
 
-constexpr std::size_t document_bytes_limit = std::size_t{64} << 20;
+constexpr std::size_t document_bytes_limit = std::size_t{128} << 20;
 constexpr std::size_t material_bytes_limit = std::size_t{1} << 20;
 
 constexpr const char* explain_mesh = "must be missing, because the body has a mesh";
@@ -190,6 +190,17 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
+}
+
+// Refuses more control points than document_control_point_limit.
+void check_control_point_count(const std::vector<Body>& bodies, FieldReader& reader) {
+  std::size_t count = 0;
+  for (const Body& body : bodies) count += body.surface.net.size();
+  if (count <= static_cast<std::size_t>(document_control_point_limit)) return;
+  reader.refuse("other_bodies",
+                "have " + std::to_string(count) + " control points with the first body; at most " +
+                    std::to_string(document_control_point_limit) + " are allowed; use fewer bodies",
+                ErrorCode::too_many);
 }
 
 // Reads the field "body" and the optional field "other_bodies".
@@ -411,6 +422,7 @@ Result<Document> read_current_fields(const Json& json, const std::string& source
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
+  if (bodies) check_control_point_count(*bodies, reader);
   if (!bodies || !reader.status().ok()) return reader.status().error();
   Scene scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry, ground, std::move(trial)};
   if (const Status status = check_trial(scene); !status.ok()) return status.error().in(source);
@@ -459,7 +471,7 @@ Status write_document(const Document& document, const std::filesystem::path& fil
                       const OutputOptions& options) {
   const std::string page = json_to_page(document_to_json(document));
   if (page.size() > document_bytes_limit) {
-    return Error{ErrorCode::too_many, file.string() + ": not saved, larger than 64 MiB; remove bodies"};
+    return Error{ErrorCode::too_many, file.string() + ": not saved, larger than 128 MiB; remove bodies"};
   }
   auto read_back = parse_json(page, file.string() + ": not saved");
   if (!read_back.ok()) return read_back.error();

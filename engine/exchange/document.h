@@ -113,7 +113,7 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
 // read and written again has the same bytes.
 Json document_to_json(const Document& document);
 
-// Reads a document of at most 64 MiB.
+// Reads a document of at most 128 MiB.
 Result<Document> read_document(const std::filesystem::path& file);
 
 // Writes a document to a temporary file beside `file`, flushes it and renames it, so that a crash leaves

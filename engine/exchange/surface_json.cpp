@@ -43,6 +43,13 @@ void check_knot_steps(const KnotVector& direction, FieldReader& reader) {
 
 std::optional<ControlNet> read_net(FieldReader& reader, int row_count, int column_count) {
   const char* field = "control_points_mm";
+  if (row_count * column_count > document_control_point_limit) {
+    reader.refuse(field,
+                  "are " + std::to_string(row_count) + " x " + std::to_string(column_count) + "; at most " +
+                      std::to_string(document_control_point_limit) + " are allowed",
+                  ErrorCode::too_many);
+    return std::nullopt;
+  }
   const Json& rows = reader.list(field, {row_count, row_count});
   if (!reader.status().ok()) return std::nullopt;
   ControlNet net(row_count, column_count);

@@ -134,7 +134,11 @@ struct Body {
 // in every tick of one millisecond.
 inline constexpr int body_triangle_limit = 20000;
 
-inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
+// Number of control points of a surface in each direction, and of all surfaces of a document together.
+inline constexpr Range<int> control_point_count_range{2, 4000};
+inline constexpr int document_control_point_limit = 1'000'000;
+// Number in each direction of a surface that a simulation moves in every tick.
+inline constexpr Range<int> sculpted_control_point_count_range{2, 200};
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 inline constexpr Range<int> rim_corner_count_range{3, 1000};
 

@@ -81,7 +81,8 @@ Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   }
   if (v <= surface.v.domain_start() || v >= surface.v.domain_end()) return surface;
   const int multiplicity = std::max(1, surface.v.degree() - 1);
-  if (surface.v.control_point_count() + multiplicity > control_point_count_range.high) return surface;
+  if (surface.v.control_point_count() + multiplicity > sculpted_control_point_count_range.high)
+    return surface;
   return insert_knot(surface, Direction::v, v, multiplicity);
 }
 

@@ -118,8 +118,27 @@ Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
   return SkinMapping(std::move(mapping).value());
 }
 
+namespace {
+
+// Refuses a control net that is too large to be moved in every tick.
+Status check_net_size(const Body& body) {
+  const ControlNet& net = body.surface.net;
+  const Range<int>& range = sculpted_control_point_count_range;
+  if (body.mesh || (net.rows <= range.high && net.columns <= range.high)) return {};
+  const auto limited = [&](int count) { return std::to_string(std::min(count, range.high)); };
+  return Error{ErrorCode::too_many,
+               "has " + std::to_string(net.rows) + " x " + std::to_string(net.columns) +
+                   " control points, and a body that moves has at most " + std::to_string(range.high) +
+                   " in a direction; reduce them with `spoonbill change MODEL rebuild --control " +
+                   limited(net.rows) + "x" + limited(net.columns) + " --out OTHER`",
+               "control_points_mm"};
+}
+
+}  // namespace
+
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch, bool is_real_time) {
+  if (Status status = check_net_size(body); !status.ok()) return status.error();
   Result<std::shared_ptr<const TrimmedArea>> trim = make_trimmed_area(body);
   if (!trim.ok()) return trim.error();
   Result<LatticeMesh> mesh = make_body_lattice(body, watch);

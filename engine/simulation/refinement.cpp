@@ -30,7 +30,7 @@ Result<BodyMapping> make_finer(const RefineKnots& command, const BodyState& body
   for (const auto& [knots, added] : {std::pair{&mapping.rest().u, &u}, std::pair{&mapping.rest().v, &v}}) {
     if (Status status = check_range("refine_knots: control points in one direction",
                                     knots->control_point_count() + static_cast<int>(added->size()),
-                                    control_point_count_range);
+                                    sculpted_control_point_count_range);
         !status.ok()) {
       return status.error();
     }

@@ -27,7 +27,7 @@ std::uint64_t fingerprint_structure(const Surface& surface) {
 
 template <class Real>
 void reserve(KnotVector& u, KnotVector& v, std::vector<Real>& x, std::vector<Real>& y, std::vector<Real>& z) {
-  for (KnotVector* const knots : {&u, &v}) knots->reserve(control_point_count_range.high);
+  for (KnotVector* const knots : {&u, &v}) knots->reserve(sculpted_control_point_count_range.high);
   for (std::vector<Real>* const axis : {&x, &y, &z}) {
     axis->reserve(static_cast<std::size_t>(refined_control_point_limit));
   }

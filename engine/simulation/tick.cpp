@@ -341,8 +341,8 @@ std::optional<RefineKnots> find_refinement(const BodyState& body, int index) {
   const Surface& surface = body.mapping().current();
   const int rows = surface.net.rows + count_elements(surface.u, refinement.u);
   const int columns = surface.net.columns + count_elements(surface.v, refinement.v);
-  if (!control_point_count_range.contains(rows) || !control_point_count_range.contains(columns) ||
-      rows * columns > refined_control_point_limit) {
+  if (!sculpted_control_point_count_range.contains(rows) ||
+      !sculpted_control_point_count_range.contains(columns) || rows * columns > refined_control_point_limit) {
     return std::nullopt;
   }
   return refinement;

@@ -8,6 +8,7 @@
 #include "engine/exchange/document.h"
 #include "tests/app/spoon_parts.h"
 #include "tests/app/workplace.h"
+#include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
 namespace {
@@ -169,13 +170,15 @@ TEST(ChangeCommand, RefusesInOneLine) {
 
 TEST(ChangeCommand, SaysWhatADegreeTakes) {
   const Workplace place;
-  const std::string ball = place.text("ball.json");
-  ASSERT_EQ(run({"new", "sphere", "--control", "40x48", "--out", ball}).code, exit_done);
-  // The 48 control points in v make 43 spans of degree 5. At degree 9, the knot vector has 42 inner knots of
-  // multiplicity five and ten knots at each end, which makes 42 x 5 + 10 control points.
-  const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
+  Document document = sample_document();
+  document.scene.bodies[0].surface = wavy_sheet(4, 600);
+  place.write("sheet.json", json_to_page(document_to_json(document)));
+  // The 600 control points in v make 597 spans of degree 3. At degree 9, the knot vector has 596 inner knots
+  // of multiplicity seven and ten knots at each end, which makes 596 x 7 + 10 control points.
+  const Outcome outcome =
+      run({"change", place.text("sheet.json"), "degree", "v", "9", "--out", place.text("out.json")});
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
-  EXPECT_NE(outcome.err.find("needs 220 control points, and a document holds 200"), std::string::npos)
+  EXPECT_NE(outcome.err.find("needs 4182 control points, and a document holds 4000"), std::string::npos)
       << outcome.err;
 }
 

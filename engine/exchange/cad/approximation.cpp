@@ -176,9 +176,12 @@ bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pie
   return refined;
 }
 
+// Largest number of control points of an approximated surface in each direction, and altogether.
+constexpr int direction_limit = 1000, point_limit = 200'000;
+
 int count_control_points(const PatchDirection& direction, const Pieces& pieces, int degree) {
   const auto knots = make_knots(direction, pieces, degree);
-  return knots ? knots->control_point_count() : control_point_count_range.high + 1;
+  return knots ? knots->control_point_count() : direction_limit + 1;
 }
 
 // Approximates the patch by a surface of the given degree. Returns nullopt if too many control points would
@@ -187,8 +190,9 @@ Result<std::optional<PatchFit>> approximate_with_degree(const Patch& patch, doub
   Pieces u_pieces = initial_pieces(patch.u, degree), v_pieces = initial_pieces(patch.v, degree);
   const double allowed_m = allowed_fraction * tolerance_m;
   for (;;) {
-    if (count_control_points(patch.u, u_pieces, degree) > control_point_count_range.high ||
-        count_control_points(patch.v, v_pieces, degree) > control_point_count_range.high) {
+    const int rows = count_control_points(patch.u, u_pieces, degree);
+    const int columns = count_control_points(patch.v, v_pieces, degree);
+    if (std::max(rows, columns) > direction_limit || rows * columns > point_limit) {
       return std::optional<PatchFit>();
     }
     const auto u = make_knots(patch.u, u_pieces, degree), v = make_knots(patch.v, v_pieces, degree);
@@ -228,8 +232,9 @@ Result<PatchFit> approximate(const Patch& patch, double tolerance_m) {
   }
   return Error{ErrorCode::too_many,
                "a tolerance of " + number_text(1e3 * tolerance_m) + " mm needs more than the " +
-                   std::to_string(control_point_count_range.high) +
-                   " control points that a surface may have in one direction; choose a larger tolerance"};
+                   std::to_string(direction_limit) + " control points in one direction, or the " +
+                   std::to_string(point_limit) +
+                   " altogether, that an approximated surface may have; choose a larger tolerance"};
 }
 
 constexpr int lines_compared = 7;

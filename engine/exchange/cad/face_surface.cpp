@@ -209,7 +209,8 @@ std::optional<Surface> exact_surface(const Geometry& surface, const ParameterBox
   if (spline->IsVPeriodic()) spline->SetVNotPeriodic();
   auto exact = from_occt(*spline);
   if (!exact || !control_point_count_range.contains(exact->net.rows) ||
-      !control_point_count_range.contains(exact->net.columns)) {
+      !control_point_count_range.contains(exact->net.columns) ||
+      exact->net.size() > static_cast<std::size_t>(document_control_point_limit)) {
     return {};
   }
   return std::move(exact).value();

@@ -342,6 +342,26 @@ TEST(Document, RefusesAbsurdSurfaces) {
             Refusal(ErrorCode::out_of_range, "body.surface.control_points_mm[2][1]"));
 }
 
+TEST(Document, KeepsFourThousandControlPointsInADirection) {
+  Document document = sample_document();
+  document.scene.bodies[0].surface = wavy_sheet(4, 4000);
+  EXPECT_TRUE(same_bits(document, through_text(document)));
+  document.scene.bodies[0].surface = wavy_sheet(4, 4001);
+  const auto wider = document_from_json(document_to_json(document), "sample.json");
+  EXPECT_EQ(wider.error().code, ErrorCode::too_many) << wider.error().message;
+}
+
+TEST(Document, RefusesMoreThanAMillionControlPoints) {
+  Document document = sample_document();
+  for (Body& body : document.scene.bodies) body.surface = wavy_sheet(4, 4000);
+  document.scene.bodies.resize(1, document.scene.bodies[0]);
+  const std::size_t most = static_cast<std::size_t>(document_control_point_limit) / 16000;
+  document.scene.bodies.resize(most, document.scene.bodies[0]);
+  EXPECT_TRUE(document_from_json(document_to_json(document), "sample.json"));
+  document.scene.bodies.push_back(document.scene.bodies[0]);
+  EXPECT_EQ(document_from_json(document_to_json(document), "sample.json").error().code, ErrorCode::too_many);
+}
+
 TEST(Document, RefusesKnotsThatAreNearlyEqual) {
   Json json = document_to_json(sample_document());
   Json& knots = json["body"]["surface"]["v"]["knots"];

@@ -122,6 +122,20 @@ bool same_bits(const Document& a, const Document& b) {
          tool.action == other_tool.action && tool.substeps == other_tool.substeps;
 }
 
+Surface wavy_sheet(int rows, int columns) {
+  const auto knots = [](int count) {
+    std::vector<double> all(4, 0.0);
+    for (int k = 1; k < count - 3; ++k) all.push_back(static_cast<double>(k) / (count - 3));
+    all.insert(all.end(), 4, 1.0);
+    return KnotVector::open(3, std::move(all)).value();
+  };
+  ControlNet net(rows, columns);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) net.set_point(i, j, {1e-3 * j, 0.01 * std::sin(0.01 * j), 1e-3 * i});
+  }
+  return make_surface(knots(rows), knots(columns), std::move(net)).value();
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "spoonbill-test-XXXXXX").string();
   path_ = mkdtemp(pattern.data());

@@ -11,6 +11,9 @@ namespace spoonbill {
 // Returns a document with 6 x 8 control points, 40 mm long, with lengths as a person would write them.
 Document sample_document();
 
+// Returns an open cubic sheet with so many control points, a millimetre apart.
+Surface wavy_sheet(int rows, int columns);
+
 // Returns the sample document with every length random, as in a deformed body.
 Document deformed_document(unsigned seed);
 

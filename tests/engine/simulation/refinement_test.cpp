@@ -170,7 +170,7 @@ TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
     }
     scene.planes.push_back({Vector3(0.0213, 0, 0), Vector3::UnitX()});
     Simulation simulation = simulate(scene);
-    EXPECT_LE(simulation.surface().v.control_point_count(), control_point_count_range.high);
+    EXPECT_LE(simulation.surface().v.control_point_count(), sculpted_control_point_count_range.high);
     for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.05, 0.012 - 5e-5 * tick));
     const auto moved = [&](double v) {
       const double u = surface.u.domain_start();

@@ -120,7 +120,7 @@ TEST(Refiner, RefusesALargerNetThanADocumentTakes) {
   }
   EXPECT_FALSE(status.ok());
   EXPECT_FALSE(refiner.is_prepared());
-  EXPECT_LE(simulation.surface().net.columns, control_point_count_range.high);
+  EXPECT_LE(simulation.surface().net.columns, sculpted_control_point_count_range.high);
 }
 
 }  // namespace
