@@ -1,12 +1,13 @@
 // spoonbill-cad: the child process of spoonbill that converts CAD files. Only this program loads OpenCASCADE.
 // It answers with frames (engine/exchange/frame_stream.h) on its standard output:
 //
-//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT
+//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M SEW_M FACE_LIMIT
 //   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in
 //   spoonbill-cad solids CHORD_M TRIANGLE_LIMIT
 //
-// A UNIT_M of 0 stands for the unit that FILE declares. `write` and `solids` read the frames of a model from
-// standard input; `write` answers with the content of a file, `solids` with meshes.
+// A UNIT_M of 0 stands for the unit that FILE declares, a SEW_M of 0 for its tolerance. `write` and `solids`
+// read the frames of a model from standard input; `write` answers with the content of a file, `solids` with
+// meshes.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -139,8 +140,9 @@ void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
 
 int serve(const std::vector<std::string>& arguments, const Status& confined) {
   CadReading reading;
-  const bool reads = arguments.size() == 6 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
-                     parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.face_limit);
+  const bool reads = arguments.size() == 7 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
+                     parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.sew_m) &&
+                     parse(arguments[6], reading.face_limit);
   const bool writes = arguments.size() == 4 && arguments[0] == "write";
   SolidMeshing meshing;
   const bool meshes = arguments.size() == 3 && arguments[0] == "solids" &&

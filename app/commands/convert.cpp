@@ -15,6 +15,7 @@ namespace spoonbill {
 namespace {
 
 constexpr Range<double> cad_tolerance_range_m{1e-9, 0.01};
+constexpr Range<double> sew_range_m{1e-9, 1e-4};
 
 struct ConvertOptions {
   ConversionRequest request;
@@ -81,9 +82,10 @@ CommandEntry add_convert(OptionSet root) {
   parser.set_footer(
       "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes the same formats and\n"
       "meshes (.stl, .obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight\n"
-      "meshes. Each face of a CAD file becomes a body. Faces of one solid are written as that solid if\n"
-      "they close, in CAD files and in meshes; bridged gaps are reported. OUT appears complete or not at\n"
-      "all.\n"
+      "meshes. Each face of a CAD file becomes a body. Loose faces whose edges meet are joined to a\n"
+      "solid. Faces of one solid are written as that solid if they close, in CAD files and in meshes;\n"
+      "bridged gaps are reported, and a body that cannot be written is left out with a note. OUT appears\n"
+      "complete or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser.add_option("IN", options->request.in, "Document or CAD file to read").require();
   parser.add_option("OUT", options->request.out, "File to write; its ending selects the format").require();
@@ -100,6 +102,8 @@ CommandEntry add_convert(OptionSet root) {
       [&request](double chord_m) { request.chord_m = chord_m; },
       "Largest distance of a mesh's triangles from the surface; default: 0.05mm, range: " +
           short_length_text(chord_range_m.low) + " to " + short_length_text(chord_range_m.high));
+  parser.add_flag("--allow-deviation", request.allow_deviation,
+                  "Write meshes also if they are farther away from the surface than --chord");
   add_parsed_option(
       parser, "--tolerance", "LENGTH", length_in(cad_tolerance_range_m),
       [&request](double tolerance_m) { request.tolerance_m = tolerance_m; },
@@ -107,6 +111,11 @@ CommandEntry add_convert(OptionSet root) {
       "range: " +
           short_length_text(cad_tolerance_range_m.low) + " to " +
           short_length_text(cad_tolerance_range_m.high));
+  add_parsed_option(
+      parser, "--sew", "LENGTH", length_in(sew_range_m), [&request](double sew_m) { request.sew_m = sew_m; },
+      "Largest gap between loose faces of a CAD file that are joined to a solid; default: the file's "
+      "tolerance, range: " +
+          short_length_text(sew_range_m.low) + " to " + short_length_text(sew_range_m.high));
   add_parsed_option(
       parser, "--schema", "SCHEMA", parse_schema, [&request](StepSchema schema) { request.schema = schema; },
       "Schema of a STEP file: ap214 (default) or ap242");

@@ -136,7 +136,8 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
   auto child = ForeignChild::start(
       cad_task(file, ForeignTask::Work::reading),
       {program_of(run), "read", cad_format_name(reading.format), std::filesystem::absolute(file).string(),
-       number_text(reading.unit_m), number_text(reading.tolerance_m), std::to_string(reading.face_limit)},
+       number_text(reading.unit_m), number_text(reading.tolerance_m), number_text(reading.sew_m),
+       std::to_string(reading.face_limit)},
       run.patience);
   if (!child) return child.error();
   child->watch(run.progress);

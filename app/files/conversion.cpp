@@ -17,6 +17,7 @@
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/mesh_export/mesh_writer.h"
 #include "engine/exchange/mesh_export/tessellation.h"
+#include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
 namespace {
@@ -79,9 +80,18 @@ Status check_options(const ConversionJob& job) {
     return file_error(ErrorCode::inconsistent, request.out,
                       "is not a mesh, and only meshes have a chord error; remove --chord", "--chord");
   }
+  if (request.allow_deviation && !is_written_mesh(out)) {
+    return file_error(ErrorCode::inconsistent, request.out,
+                      "is not a mesh, and only meshes deviate; remove --allow-deviation",
+                      "--allow-deviation");
+  }
   if (request.tolerance_m && !is_cad(in)) {
     return file_error(ErrorCode::inconsistent, request.in, "is converted exactly; remove --tolerance",
                       "--tolerance");
+  }
+  if (request.sew_m && !is_cad(in)) {
+    return file_error(ErrorCode::inconsistent, request.in,
+                      "is not a CAD file, and only faces of CAD files are joined; remove --sew", "--sew");
   }
   if (request.schema && out != FileFormat::step) {
     return file_error(ErrorCode::inconsistent, request.out,
@@ -150,6 +160,7 @@ Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   CadReading reading;
   reading.format = job.in;
   reading.tolerance_m = request.tolerance_m.value_or(default_cad_tolerance_m);
+  reading.sew_m = request.sew_m.value_or(0.0);
   if (request.unit) reading.unit_m = request.unit->metres;
   auto model = read_cad_file(request.in, reading, child);
   if (!model) return model.error();
@@ -196,6 +207,7 @@ bool is_face_of_solid(const CadSurface& surface) {
 
 struct ModelMeshing {
   double chord_m = default_chord_m;
+  bool allow_deviation = false;
   std::filesystem::path file;  // file to name in messages
   CadChild child;              // child process that joins the faces of solids
   Progress progress;           // progress of the meshing
@@ -218,7 +230,9 @@ class Mesher {
     const std::set<std::size_t> loose(solids.loose.begin(), solids.loose.end());
     for (std::size_t k = 0; k < model_.surfaces.size(); ++k) {
       if (const auto solid = starts.find(k); solid != starts.end()) {
-        add({solid->second->name, std::move(solid->second->mesh), true}, solid->second->chord_error_m);
+        const double gap_m = solid->second->gap_m, error_m = solid->second->chord_error_m;
+        NamedMesh mesh{solid->second->name, std::move(solid->second->mesh), true};
+        if (Status added = add(std::move(mesh), error_m, gap_m); !added) return added;
       }
       if (loose.contains(k)) {
         if (Status added = add_single_surface(k); !added) return added;
@@ -280,8 +294,7 @@ class Mesher {
     if (!alone) return alone.error().in("'" + part.name + "'").in(file);
     if (part.shell_thickness_m > 0.0) make_shell(part, alone.value());
     triangles_ += alone->mesh.triangles.size();
-    add({part.name, std::move(alone->mesh), alone->closed}, alone->chord_error_m);
-    return {};
+    return add({part.name, std::move(alone->mesh), alone->closed}, alone->chord_error_m, closing_tolerance_m);
   }
 
   void make_shell(const CadSurface& part, Tessellation& tessellation) {
@@ -295,9 +308,18 @@ class Mesher {
     }
   }
 
-  void add(NamedMesh mesh, double chord_error_m) {
+  // `gap_m` is the width of gaps that the mesh closes, by which it may exceed the chord error.
+  Status add(NamedMesh mesh, double chord_error_m, double gap_m) {
+    if (!meshing_.allow_deviation && chord_error_m > meshing_.chord_m + gap_m) {
+      return file_error(ErrorCode::mismatch, meshing_.file,
+                        "the mesh of '" + mesh.name + "' is within " + short_length_text(chord_error_m) +
+                            " of the surface, not within " + short_length_text(meshing_.chord_m) +
+                            "; choose a larger --chord, or add --allow-deviation",
+                        "--chord");
+    }
     made_.chord_error_m = std::max(made_.chord_error_m, chord_error_m);
     made_.meshes.push_back(std::move(mesh));
+    return {};
   }
 
   const CadModel& model_;
@@ -321,6 +343,7 @@ Status write_mesh_file(const CadModel& model, const ConversionJob& job, const Pr
   const LengthUnit unit = request.unit.value_or(job.out == FileFormat::ply ? metre : millimetre);
   ModelMeshing meshing;
   meshing.chord_m = request.chord_m.value_or(default_chord_m);
+  meshing.allow_deviation = request.allow_deviation;
   meshing.file = request.out;
   meshing.child = make_child(request, progress.part(read_fraction, joined_fraction));
   meshing.progress = progress.part(joined_fraction, 1.0);

@@ -23,7 +23,9 @@ struct ConversionRequest {
   // a CAD file declares.
   std::optional<LengthUnit> unit;
   std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
+  bool allow_deviation = false;       // whether meshes may be farther away from the surfaces than that
   std::optional<double> tolerance_m;  // tolerance for CAD geometry that is not a B-spline; default: 0.01 mm
+  std::optional<double> sew_m;        // gap up to which loose faces are joined; default: the file's tolerance
   std::optional<StepSchema> schema;   // schema of a STEP file; default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
   OutputOptions how;                  // how `out` replaces an existing file
@@ -46,7 +48,7 @@ struct ConversionReport {
 // In CAD files and meshes, the faces of one solid are joined if they enclose a volume; otherwise a note
 // reports that the solid is open. `out` appears complete or not at all; on an error an existing file stays as
 // it is. Errors: a mesh as input; two documents without a choice of bodies; options that have no effect on
-// these formats; errors of the readers and writers.
+// these formats; a mesh that misses its chord error; errors of the readers and writers.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
 
 // Returns true if the extension is that of a CAD file or a mesh.

@@ -44,7 +44,9 @@ struct CadReading {
   FileFormat format = FileFormat::step;  // step or iges
   double unit_m = 0.0;                   // length of one unit of the file; 0: as stated in the file
   double tolerance_m = 1e-5;             // largest deviation of approximated surfaces
-  std::size_t face_limit = 1000;         // files with more faces are refused
+  // Gap up to which edges of loose faces are joined; 0: the tolerance that the file states.
+  double sew_m = 0.0;
+  std::size_t face_limit = 1000;  // files with more faces are refused
 };
 
 struct CadWriting {

@@ -117,6 +117,30 @@ TEST_F(ConvertTest, MeshesKeepTheirChordErrorAndSayTheirUnit) {
   }
 }
 
+// A sheet that is exact, with more control points than can be sculpted.
+TEST_F(ConvertTest, AWideSheetIsExactAndIsSculptedOnceItIsRebuilt) {
+  Document document = sample_document();
+  document.scene.bodies[0].surface = wavy_sheet(4, 201);
+  document.scene.bodies[0].shell_thickness_m = 0.002;
+  document.scene.planes.clear();
+  document.view = Json::object();
+  place_.write("sheet.json", json_to_page(document_to_json(document)));
+  convert_for_facts({place_.text("sheet.json"), place_.text("sheet.step")});
+  const Json back = convert_for_facts({place_.text("sheet.step"), place_.text("back.json")});
+  EXPECT_EQ(back["bodies"][0]["deviation_m"], 0.0);
+  EXPECT_LT(largest_distance_m(place_.path("sheet.json"), place_.path("back.json")), 1e-9);
+  const Outcome refused = run_process(SPOONBILL_PROGRAM, {"try", place_.text("sheet.json")});
+  EXPECT_EQ(refused.code, exit_failed);
+  EXPECT_NE(refused.err.find("rebuild --control 4x200"), std::string::npos) << refused.err;
+  const Outcome rebuilt =
+      run_process(SPOONBILL_PROGRAM, {"change", place_.text("sheet.json"), "rebuild", "--control", "4x100",
+                                      "--tolerance", "1mm", "--out", place_.text("less.json")});
+  ASSERT_EQ(rebuilt.code, exit_done) << rebuilt.err;
+  const Outcome tried =
+      run_process(SPOONBILL_PROGRAM, {"try", place_.text("less.json"), "--seconds", "0.01"});
+  EXPECT_EQ(tried.code, exit_done) << tried.err;
+}
+
 TEST_F(ConvertTest, AStepFileOfAnotherUnitOrNone) {
   convert_for_facts({handle_, place_.text("a.step")});
   std::string text = content_of(place_.path("a.step"));
@@ -195,6 +219,30 @@ TEST_F(ConvertTest, ATrimmedSurfaceStaysTrimmed) {
     EXPECT_GE(trims, 1u);
     EXPECT_TRUE(back["notes"].empty());
   }
+}
+
+// The chord is finer than the polygons that replace trim loops.
+TEST_F(ConvertTest, AMeshThatMissesItsChordIsRefusedUnlessThatIsAllowed) {
+  Json document = json_of(content_of(place_.path("model.json")));
+  const Surface surface = read_document(place_.path("model.json"))->scene.bodies[0].surface;
+  const auto at = [](const KnotVector& knots, double fraction) {
+    return knots.domain_start() + fraction * knots.domain_length();
+  };
+  Json points = Json::array();
+  for (const auto& [u, v] : {std::pair(0.3, 0.45), std::pair(0.3, 0.5), std::pair(0.4, 0.55),
+                             std::pair(0.5, 0.5), std::pair(0.5, 0.45), std::pair(0.4, 0.4)}) {
+    points.push_back(Json::array({at(surface.u, u), at(surface.v, v)}));
+  }
+  document["body"]["surface"]["trims"] = Json::array(
+      {{{"degree", 3}, {"periodic", true}, {"knots", {0, 1, 2, 3, 4, 5, 6}}, {"control_points_uv", points}}});
+  place_.write("trimmed.json", json_to_page(document));
+  const std::vector<std::string> fine = {place_.text("trimmed.json"), place_.text("a.stl"), "--chord",
+                                         "0.0002mm"};
+  expect_failure(fine, "--allow-deviation");
+  EXPECT_FALSE(std::filesystem::exists(place_.path("a.stl")));
+  std::vector<std::string> allowed = fine;
+  allowed.push_back("--allow-deviation");
+  EXPECT_GT(convert_for_facts(allowed)["chord_error_m"].get<double>(), 2e-7);
 }
 
 TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {

@@ -15,6 +15,7 @@
 #include <GeomAdaptor_Surface.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
+#include <ShapeFix_Shape.hxx>
 #include <Standard_Failure.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
@@ -53,6 +54,8 @@ constexpr double vertex_distance_mm = 1e-7;
 // tolerance and exceeds it only at kinks. A larger error than the limit is refused.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
+// Largest tolerance that a repaired face may get.
+constexpr double healing_tolerance_mm = 1e-2;
 constexpr int degree_limit = 14, segment_limit = 1000;
 
 const std::vector<double>& along(const TrimLoop& loop, Direction direction) {
@@ -344,6 +347,21 @@ Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, cons
   return faces;
 }
 
+// Repairs a face that OpenCASCADE rejects, such as one whose outline touches itself. Returns the faces that
+// replace it, or the face itself if the repair leaves an invalid one.
+std::vector<TopoDS_Face> heal(const TopoDS_Face& face) {
+  if (BRepCheck_Analyzer(face).IsValid()) return {face};
+  ShapeFix_Shape repair(face);
+  repair.SetMaxTolerance(healing_tolerance_mm);
+  repair.Perform();
+  std::vector<TopoDS_Face> healed;
+  for (TopExp_Explorer each(repair.Shape(), TopAbs_FACE); each.More(); each.Next()) {
+    healed.push_back(TopoDS::Face(each.Current()));
+    if (!BRepCheck_Analyzer(healed.back()).IsValid()) return {face};
+  }
+  return healed.empty() ? std::vector{face} : healed;
+}
+
 constexpr double sewing_tolerance_mm = 1e-6;
 
 // Returns a compound with one shell for each face.
@@ -433,7 +451,10 @@ Result<PartFaces> build_faces(const CadSurface& part) {
     if (!geometry) return geometry.error();
     const auto piece_faces = make_faces(geometry.value(), piece);
     if (!piece_faces) return piece_faces.error();
-    made.faces.insert(made.faces.end(), piece_faces->begin(), piece_faces->end());
+    for (const TopoDS_Face& face : piece_faces.value()) {
+      const std::vector<TopoDS_Face> healed = heal(face);
+      made.faces.insert(made.faces.end(), healed.begin(), healed.end());
+    }
   }
   return made;
 }

@@ -32,7 +32,7 @@ using SurfaceSink = std::function<void(CadSurface)>;
 // outline differs from their edges in the file by more than the tolerance. They also report references to
 // other files, which are not opened, and solids that are separated into faces. Refused: a file that
 // OpenCASCADE cannot read, a file without faces that can be converted, and a file with more faces than the
-// limit.
+// limit. Faces that belong to no solid are joined to one if they enclose it (CadReading::sew_m).
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const SurfaceSink& sink, const Progress& progress = {});
 
@@ -41,7 +41,9 @@ Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& r
 // 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. The faces of one
 // solid are joined into a solid with its name if they enclose it. A surface that find_closing() classifies as
 // solid is written exactly closed. Notes report by how much such a surface was open. They also report
-// surfaces that would close but are not written as solids, and bridged gaps between the faces of a solid.
+// surfaces that would close but are not written as solids, bridged gaps between the faces of a solid, and
+// bodies that are left out because OpenCASCADE cannot make a shape of them. Refused: a model of which nothing
+// can be written.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 

@@ -32,6 +32,7 @@
 #include "engine/exchange/cad/face_surface.h"
 #include "engine/exchange/cad/file_report.h"
 #include "engine/exchange/cad/iges_file.h"
+#include "engine/exchange/cad/sewn_faces.h"
 #include "engine/exchange/frame_stream.h"
 
 namespace spoonbill {
@@ -298,6 +299,46 @@ void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool
                         "; on export, the bodies of a solid are joined again if they still enclose it");
 }
 
+// Gives the faces that belong to no solid the name of one if they enclose a volume once their edges are
+// joined. Adds notes about what was joined, and about how to join the rest.
+void join_loose_faces(std::vector<NamedFace>& faces, double scale, double sew_m, CadModel& model) {
+  std::vector<std::size_t> loose;
+  std::vector<TopoDS_Face> shapes;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (!faces[k].solid.empty()) continue;
+    loose.push_back(k);
+    shapes.push_back(faces[k].face);
+  }
+  if (loose.size() < 2) return;
+  const double tolerance_mm = sew_m > 0.0 ? sew_m / scale : find_file_tolerance_mm(shapes);
+  const auto shells = sew_closed_shells(shapes, tolerance_mm);
+  std::set<std::string> taken;
+  for (const NamedFace& face : faces) taken.insert(face.solid);
+  std::size_t joined = 0;
+  for (const std::vector<std::size_t>& shell : shells) {
+    std::string name = "solid";
+    for (int number = 2; !taken.insert(name).second; ++number) name = "solid " + std::to_string(number);
+    for (const std::size_t index : shell) {
+      faces[loose[index]].face = shapes[index];
+      faces[loose[index]].solid = name;
+    }
+    joined += shell.size();
+  }
+  const std::string gap = short_length_text(tolerance_mm * scale);
+  if (joined > 0) {
+    model.notes.push_back(std::to_string(joined) + " of " + std::to_string(loose.size()) +
+                          " loose faces meet within " + gap + " and are joined to " +
+                          (shells.size() == 1 ? "a solid" : std::to_string(shells.size()) + " solids"));
+  } else if (sew_m > 0.0) {
+    model.notes.push_back("the " + std::to_string(loose.size()) +
+                          " loose faces enclose no volume if their edges are joined within " + gap);
+  } else if (!sew_closed_shells(shapes, largest_sewn_gap_mm).empty()) {
+    model.notes.push_back("loose faces enclose a volume if edges up to " +
+                          short_length_text(largest_sewn_gap_mm * scale) +
+                          " apart are joined; convert the file with --sew to join them");
+  }
+}
+
 // Returns the factor from OpenCASCADE's coordinates to metres. OpenCASCADE has multiplied the file's numbers
 // by `unit.millimetres`. The factor undoes this if the caller states a unit. It also does so if the file
 // declares none, and one unit of the file then counts as 1 mm.
@@ -317,7 +358,8 @@ CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
   surface.trims = std::move(found.trims);
   surface.trim_deviation_m = std::min(found.trim_deviation_m, trim_deviation_limit_m);
   surface.trim_problem = std::move(found.trim_problem);
-  surface.solid = face.solid;
+  // With a face that is whole instead of trimmed, a solid would close without its holes.
+  if (surface.trim_problem.empty()) surface.solid = face.solid;
   return surface;
 }
 
@@ -381,7 +423,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
       reading.format == FileFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
   if (!progress.report(transfer_fraction)) return Progress::stopped();
-  const std::vector<NamedFace> faces = collect_faces(content->document);
+  std::vector<NamedFace> faces = collect_faces(content->document);
   if (faces.empty()) return no_surface_error(content.value());
   if (faces.size() > reading.face_limit) {
     return Error{ErrorCode::too_many, "has " + std::to_string(faces.size()) + " faces, more than the " +
@@ -391,8 +433,10 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   CadModel model;
   add_unit(content->unit, reading, model);
   add_loss_notes(content.value(), model);
-  const Status status = convert_faces(faces, find_scale(content->unit, reading), reading, sink,
-                                      progress.part(transfer_fraction, 1.0), model);
+  const double scale = find_scale(content->unit, reading);
+  join_loose_faces(faces, scale, reading.sew_m, model);
+  const Status status =
+      convert_faces(faces, scale, reading, sink, progress.part(transfer_fraction, 1.0), model);
   if (!status) return status.error();
   return model;
 }

@@ -35,6 +35,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <new>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -43,6 +44,7 @@
 #include <vector>
 
 #include "engine/base/text.h"
+#include "engine/bspline/evaluate.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad/joined_faces.h"
@@ -149,17 +151,23 @@ void add_body_notes(const CadSurface& surface, const BodyShape& body, double mov
   content.notes.push_back("'" + surface.name + describe_open_shell(surface, body));
 }
 
-// Collector of the bodies of a model in the order of its surfaces.
+// Collector of the bodies of a model in the order of its surfaces. A body from which OpenCASCADE cannot make
+// a shape is left out with a note.
 class BodyCollector {
  public:
   BodyCollector(const CadModel& model, CadFileContent& content) : model_(model), content_(content) {}
 
-  Status add(const CadSurface& surface) {
-    if (surface.solid.empty()) return add_surface_body(surface);
-    return added_solids_.insert(surface.solid).second ? add_solid(surface.solid) : Status();
+  void add(const CadSurface& surface) {
+    if (surface.solid.empty()) {
+      add_surface_body(surface);
+    } else if (added_solids_.insert(surface.solid).second) {
+      add_solid(surface.solid);
+    }
   }
 
-  std::vector<WrittenBody> release_bodies() {
+  // Fails if nothing can be written.
+  Result<std::vector<WrittenBody>> release_bodies() {
+    if (bodies_.empty() && failure_) return *failure_;
     std::vector<std::string> names;
     for (const WrittenBody& body : bodies_) names.push_back(body.name);
     names = make_names_unique(names, "body");
@@ -168,37 +176,49 @@ class BodyCollector {
   }
 
  private:
-  Status add_surface_body(const CadSurface& surface) {
+  void add_surface_body(const CadSurface& surface) {
     CadSurface closed = surface;
     auto [exact, moved_m] = close_exactly(surface.surface);
     closed.surface = std::move(exact);
     const auto body = build_body_shape(closed);
-    if (!body) return body.error().in("'" + surface.name + "'");
+    if (!body) return leave_out(surface, body.error());
     add_body_notes(surface, body.value(), moved_m, content_);
     bodies_.push_back({surface.name, body->shape, body->solid, &surface});
-    return {};
   }
 
-  Status add_solid(const std::string& name) {
+  void leave_out(const CadSurface& surface, const Error& error) {
+    if (!failure_) failure_ = error.in("'" + surface.name + "'");
+    const auto centre = [](const KnotVector& knots) {
+      return 0.5 * (knots.domain_start() + knots.domain_end());
+    };
+    content_.notes.push_back(
+        "'" + surface.name + "'" + (surface.solid.empty() ? "" : " of '" + surface.solid + "'") + " at " +
+        position_text(position(surface.surface, centre(surface.surface.u), centre(surface.surface.v))) +
+        " is not written: " + error.message + "; simplify or remove its trims");
+  }
+
+  void add_solid(const std::string& name) {
     std::vector<const CadSurface*> parts;
     for (const CadSurface& surface : model_.surfaces) {
       if (surface.solid == name) parts.push_back(&surface);
     }
     const auto joined = join_faces(parts);
-    if (!joined) return joined.error();
+    if (!joined) {
+      content_.notes.push_back("'" + name + "' is not written as a solid: " + joined.error().message);
+      for (const CadSurface* part : parts) add_surface_body(*part);
+      return;
+    }
     for (const JoinedSolid& solid : joined->solids) bodies_.push_back({name, solid.shape, true, nullptr});
     content_.solids += static_cast<int>(joined->solids.size());
-    for (const std::size_t index : joined->loose) {
-      if (Status added = add_surface_body(*parts[index]); !added) return added;
-    }
+    for (const std::size_t index : joined->loose) add_surface_body(*parts[index]);
     const auto notes = describe_joining(joined.value(), name, parts, "; they are written one by one");
     content_.notes.insert(content_.notes.end(), notes.begin(), notes.end());
-    return {};
   }
 
   const CadModel& model_;
   CadFileContent& content_;
   std::vector<WrittenBody> bodies_;
+  std::optional<Error> failure_;  // of the first body that was left out
   std::set<std::string> added_solids_;
 };
 
@@ -208,7 +228,7 @@ Result<std::vector<WrittenBody>> collect_bodies(const CadModel& model, const Pro
                                                 CadFileContent& content) {
   BodyCollector collector(model, content);
   for (std::size_t k = 0; k < model.surfaces.size(); ++k) {
-    if (Status added = collector.add(model.surfaces[k]); !added) return added.error();
+    collector.add(model.surfaces[k]);
     const double fraction = static_cast<double>(k + 1) / static_cast<double>(model.surfaces.size());
     if (!progress.report(fraction)) return Progress::stopped();
   }

@@ -186,7 +186,7 @@ TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
     const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
     EXPECT_FALSE(found.model.unit_declared);
     EXPECT_EQ(found.model.unit, "mm");
-    ASSERT_EQ(found.model.notes.size(), 1u);
+    ASSERT_FALSE(found.model.notes.empty());
     EXPECT_NE(found.model.notes[0].find("declares no unit"), std::string::npos);
     EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005) / 25.4).norm(), 1e-9);
   }

@@ -18,6 +18,7 @@
 
 #include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad/face_surface.h"
+#include "engine/exchange/mesh_export/tessellation.h"
 #include "tests/engine/exchange/cad/kept_part.h"
 #include "tests/engine/exchange/sample_document.h"
 
@@ -111,6 +112,32 @@ TEST_F(ImportedEdges, ASkippedFaceIsPlacedAndNotCounted) {
   ASSERT_EQ(model.notes.size(), 2u);
   EXPECT_TRUE(model.notes[0].starts_with("5 of the 6 faces of a solid")) << model.notes[0];
   EXPECT_TRUE(model.notes[1].starts_with("'block 6' at (20, 15, 20) mm is skipped: ")) << model.notes[1];
+}
+
+// The outline of the bottom face touches itself where the hole reaches the rounded edge.
+TEST_F(ImportedEdges, AHoleThatTouchesItsRimClosesAgain) {
+  const CadModel model = read_text(text_of_file("hole-touches-rim.step"));
+  expect_one_solid(model, 11, 1029.14e-9);
+  const auto written = write_cad(model, {});
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(written->solids, 1);
+  expect_one_solid(read_text(written->text), 11, 1029.14e-9);
+}
+
+// A dome with a wall of 1 mm, of whose mesh by OpenCASCADE alone half the wall is missing.
+TEST_F(ImportedEdges, AThinDomeIsMeshedWithinItsChord) {
+  const CadModel model = read_text(text_of_file("dome.step"));
+  for (const double chord_m : {5e-5, 2e-5}) {
+    SCOPED_TRACE(chord_m);
+    const auto solids = mesh_solids(model, {chord_m});
+    ASSERT_TRUE(solids) << solids.error().message;
+    ASSERT_EQ(solids->solids.size(), 1u);
+    const CadSolid& solid = solids->solids[0];
+    EXPECT_LE(solid.chord_error_m, chord_m + solid.gap_m);
+    // The faces move by at most the chord error.
+    EXPECT_NEAR(enclosed_volume_m3(solid.mesh), 9803.5e-9, (chord_m + solid.gap_m) * solid.area_m2);
+    EXPECT_LT(solid.mesh.triangles.size(), 100000u);
+  }
 }
 
 TEST_F(ImportedEdges, ControlPointsOutsideTheDomainDoNotBendATrim) {

@@ -33,7 +33,8 @@ std::vector<NamedShape> single_faces();
 
 // Writes the shape with OpenCASCADE to a STEP file in the folder and returns what our reader reads from it.
 // prepare_occt() must have been called.
-CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder);
+CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder,
+                           const CadReading& reading = {});
 
 int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
 

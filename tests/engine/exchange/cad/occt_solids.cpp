@@ -249,14 +249,15 @@ TopoDS_Shape drilled_box() {
   return BRepAlgoAPI_Cut(box, drill).Shape();
 }
 
-CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder) {
+CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder,
+                           const CadReading& reading) {
   set_file_unit("mm");
   const auto file = folder / "in.step";
   STEPControl_Writer writer;
   EXPECT_EQ(writer.Transfer(shape, STEPControl_AsIs), IFSelect_RetDone);
   EXPECT_EQ(writer.Write(file.c_str()), IFSelect_RetDone);
   std::vector<CadSurface> surfaces;
-  auto model = read_cad(file, {}, [&](CadSurface part) { surfaces.push_back(std::move(part)); });
+  auto model = read_cad(file, reading, [&](CadSurface part) { surfaces.push_back(std::move(part)); });
   EXPECT_TRUE(model) << model.error().message;
   if (!model) return {};
   model->surfaces = std::move(surfaces);
