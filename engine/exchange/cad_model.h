@@ -29,7 +29,8 @@ struct CadSurface {
   // Largest distance between the file's edges and the trim loops or, if the surface is untrimmed, between the
   // file's edges and the sides of the surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // name of the solid, if the surface is one of its several faces; otherwise empty
+  // Name of the solid, if the surface is one of its several faces and has no trim_problem; otherwise empty.
+  std::string solid = {};
 };
 
 struct CadModel {

@@ -7,9 +7,11 @@
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
 #include <Geom2dAdaptor_Curve.hxx>
 #include <Geom2d_BSplineCurve.hxx>
 #include <GeomAdaptor_Surface.hxx>
@@ -431,6 +433,12 @@ Result<BodyShape> build_checked_shape(const CadSurface& part) {
 }
 
 }  // namespace
+
+double measure_volume_mm3(const TopoDS_Shape& shell) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shell, properties);
+  return properties.Mass();
+}
 
 TopoDS_Shell make_shell(const TopoDS_Face& face) {
   TopoDS_Shell shell;

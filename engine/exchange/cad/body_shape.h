@@ -23,8 +23,12 @@ struct PartFaces {
 
 // Builds the faces of the part of a surface that remains after trimming. Each trim loop is divided into edges
 // at its corners. A surface that closes and has only holes is divided into two parts, because CAD systems do
-// not support a face between poles without an outer edge. Fails for the same reasons as build_body_shape().
+// not support a face between poles without an outer edge. A face that OpenCASCADE rejects is repaired, and
+// may become several. Fails for the same reasons as build_body_shape().
 Result<PartFaces> build_faces(const CadSurface& part);
+
+// Returns the volume that a closed shell encloses, to about 1 %; negative if its normals point inwards.
+double measure_volume_mm3(const TopoDS_Shape& shell);
 
 // Returns a shell of one face.
 TopoDS_Shell make_shell(const TopoDS_Face& face);

@@ -4,10 +4,8 @@
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepCheck_Analyzer.hxx>
 #include <BRepClass3d_SolidClassifier.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <GProp_GProps.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -26,13 +24,14 @@
 #include "engine/base/text.h"
 #include "engine/exchange/cad/body_shape.h"
 #include "engine/exchange/cad/occt_surface.h"
+#include "engine/exchange/cad/sewn_faces.h"
 
 namespace spoonbill {
 namespace {
 
 // Sewing tolerances in the order in which they are tried: from the rounding of files to the gap between two
 // approximated faces.
-constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
+constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, largest_sewn_gap_mm};
 
 // Width up to which gaps between two faces are not reported. The limit is twice the largest deviation of a
 // face from its original, if that is more.
@@ -56,12 +55,6 @@ const Geom_Surface* get_geometry(const TopoDS_Face& face) {
   return BRep_Tool::Surface(face).get();
 }
 
-double measure_volume(const TopoDS_Shape& shell) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shell, properties);
-  return properties.Mass();
-}
-
 ClosedShell make_closed_shell(const TopoDS_Shell& sewn, const PartOf& part_of) {
   ClosedShell closed;
   int balance = 0;
@@ -71,7 +64,7 @@ ClosedShell make_closed_shell(const TopoDS_Shell& sewn, const PartOf& part_of) {
     balance += faces.Current().Orientation() == TopAbs_REVERSED ? -1 : 1;
   }
   closed.shell = balance < 0 ? TopoDS::Shell(sewn.Reversed()) : sewn;
-  closed.is_cavity = measure_volume(closed.shell) < 0.0;
+  closed.is_cavity = measure_volume_mm3(closed.shell) < 0.0;
   return closed;
 }
 

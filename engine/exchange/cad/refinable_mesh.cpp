@@ -31,39 +31,37 @@ std::size_t next(std::size_t k) {
   return (k + 1) % 3;
 }
 
+// Returns the index of the item.
+template <class Item>
+std::uint32_t append(std::vector<Item>& items, const Item& item) {
+  items.push_back(item);
+  return static_cast<std::uint32_t>(items.size() - 1);
+}
+
 }  // namespace
 
 std::uint32_t RefinableMesh::add_face(const GeomAdaptor_Surface& surface) {
-  faces_.push_back(surface);
-  return static_cast<std::uint32_t>(faces_.size() - 1);
+  return append(faces_, surface);
 }
 
 std::uint32_t RefinableMesh::add_edge(const BRepAdaptor_Curve& curve) {
-  edges_.push_back(curve);
-  return static_cast<std::uint32_t>(edges_.size() - 1);
+  return append(edges_, curve);
 }
 
 std::uint32_t RefinableMesh::add_face_curve(const FaceCurve& curve) {
-  face_curves_.push_back(curve);
-  return static_cast<std::uint32_t>(face_curves_.size() - 1);
+  return append(face_curves_, curve);
 }
 
 std::uint32_t RefinableMesh::add_vertex(const Vector3& position_m) {
-  vertices_m_.push_back(position_m);
-  return static_cast<std::uint32_t>(vertices_m_.size() - 1);
+  return append(vertices_m_, position_m);
 }
 
 std::uint32_t RefinableMesh::add_side(const Side& side) {
-  sides_.push_back(side);
   side_states_.emplace_back();
-  return static_cast<std::uint32_t>(sides_.size() - 1);
+  return append(sides_, side);
 }
 
 void RefinableMesh::add_triangle(const Triangle& triangle) {
-  append(triangle);
-}
-
-void RefinableMesh::append(const Triangle& triangle) {
   triangles_.push_back(triangle);
   errors_m_.push_back(-1.0);
 }
@@ -271,11 +269,11 @@ void RefinableMesh::split_triangle(std::size_t index) {
                     {curves[0], none, curves[2]},
                     {whole.uv[0], uv[0], whole.uv[2]},
                     face});
-    append({{midpoints[0], corners[1], corners[2]},
-            {half(0, 1), whole.sides[1], cut},
-            {curves[0], curves[1], none},
-            {uv[0], whole.uv[1], whole.uv[2]},
-            face});
+    add_triangle({{midpoints[0], corners[1], corners[2]},
+                  {half(0, 1), whole.sides[1], cut},
+                  {curves[0], curves[1], none},
+                  {uv[0], whole.uv[1], whole.uv[2]},
+                  face});
     return;
   }
   const std::uint32_t across = add_inner_side(midpoints[1], midpoints[2]);
@@ -292,17 +290,17 @@ void RefinableMesh::split_triangle(std::size_t index) {
                     {curves[0], none, curves[2]},
                     {whole.uv[0], uv[0], uv[2]},
                     face});
-    append({{midpoints[0], corners[1], midpoints[1]},
-            {half(0, 1), half(1, 1), at_second},
-            {curves[0], curves[1], none},
-            {uv[0], whole.uv[1], uv[1]},
-            face});
-    append({{midpoints[0], midpoints[1], midpoints[2]},
-            {at_second, across, at_first},
-            {none, none, none},
-            {uv[0], uv[1], uv[2]},
-            face});
-    append(at_last);
+    add_triangle({{midpoints[0], corners[1], midpoints[1]},
+                  {half(0, 1), half(1, 1), at_second},
+                  {curves[0], curves[1], none},
+                  {uv[0], whole.uv[1], uv[1]},
+                  face});
+    add_triangle({{midpoints[0], midpoints[1], midpoints[2]},
+                  {at_second, across, at_first},
+                  {none, none, none},
+                  {uv[0], uv[1], uv[2]},
+                  face});
+    add_triangle(at_last);
     return;
   }
   // The quadrilateral beside side 0 is divided along its shorter diagonal.
@@ -315,11 +313,11 @@ void RefinableMesh::split_triangle(std::size_t index) {
                     {curves[0], curves[1], none},
                     {whole.uv[0], whole.uv[1], uv[1]},
                     face});
-    append({{corners[0], midpoints[1], midpoints[2]},
-            {cut, across, half(2, 0)},
-            {none, none, curves[2]},
-            {whole.uv[0], uv[1], uv[2]},
-            face});
+    add_triangle({{corners[0], midpoints[1], midpoints[2]},
+                  {cut, across, half(2, 0)},
+                  {none, none, curves[2]},
+                  {whole.uv[0], uv[1], uv[2]},
+                  face});
   } else {
     const std::uint32_t cut = add_inner_side(corners[1], midpoints[2]);
     replace(index, {{corners[0], corners[1], midpoints[2]},
@@ -327,13 +325,13 @@ void RefinableMesh::split_triangle(std::size_t index) {
                     {curves[0], none, curves[2]},
                     {whole.uv[0], whole.uv[1], uv[2]},
                     face});
-    append({{corners[1], midpoints[1], midpoints[2]},
-            {half(1, 1), across, cut},
-            {curves[1], none, none},
-            {whole.uv[1], uv[1], uv[2]},
-            face});
+    add_triangle({{corners[1], midpoints[1], midpoints[2]},
+                  {half(1, 1), across, cut},
+                  {curves[1], none, none},
+                  {whole.uv[1], uv[1], uv[2]},
+                  face});
   }
-  append(at_last);
+  add_triangle(at_last);
 }
 
 void RefinableMesh::split_marked_sides() {

@@ -41,7 +41,7 @@ class RefinableMesh {
   };
 
   // add_face(), add_edge(), add_face_curve(), add_vertex(), add_side() and add_triangle() describe the mesh
-  // to refine. Each returns the index of what it added. OpenCASCADE's lengths are millimetres.
+  // to refine. All but the last return the index of what they add. OpenCASCADE's lengths are millimetres.
   std::uint32_t add_face(const GeomAdaptor_Surface& surface);
   std::uint32_t add_edge(const BRepAdaptor_Curve& curve);
   std::uint32_t add_face_curve(const FaceCurve& curve);
@@ -90,7 +90,6 @@ class RefinableMesh {
   std::uint32_t add_inner_side(std::uint32_t from, std::uint32_t to);
   void split_triangle(std::size_t index);
   void replace(std::size_t index, const Triangle& triangle);
-  void append(const Triangle& triangle);
 
   std::vector<GeomAdaptor_Surface> faces_;
   std::vector<BRepAdaptor_Curve> edges_;

@@ -1,9 +1,7 @@
 #include "engine/exchange/cad/sewn_faces.h"
 
 #include <BRepBuilderAPI_Sewing.hxx>
-#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
-#include <GProp_GProps.hxx>
 #include <Precision.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_DataMapOfShapeInteger.hxx>
@@ -13,16 +11,9 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 
+#include "engine/exchange/cad/body_shape.h"
+
 namespace spoonbill {
-namespace {
-
-double measure_volume(const TopoDS_Shape& shell) {
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shell, properties);
-  return properties.Mass();
-}
-
-}  // namespace
 
 double find_file_tolerance_mm(const std::vector<TopoDS_Face>& faces) {
   double tolerance_mm = Precision::Confusion();
@@ -49,7 +40,7 @@ std::vector<std::vector<std::size_t>> sew_closed_shells(std::vector<TopoDS_Face>
   }
   for (TopExp_Explorer each(sewing.SewedShape(), TopAbs_SHELL); each.More(); each.Next()) {
     if (!BRep_Tool::IsClosed(each.Current())) continue;
-    const bool is_inside_out = measure_volume(each.Current()) < 0.0;
+    const bool is_inside_out = measure_volume_mm3(each.Current()) < 0.0;
     std::vector<std::size_t> indices;
     std::vector<TopAbs_Orientation> orientations;
     for (TopExp_Explorer inner(each.Current(), TopAbs_FACE); inner.More(); inner.Next()) {

@@ -5,8 +5,10 @@
 
 #include <IFSelect_ReturnStatus.hxx>
 #include <TopAbs_ShapeEnum.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Shape.hxx>
 #include <filesystem>
+#include <gp_Pnt.hxx>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,11 @@ struct NamedShape {
   std::string name;
   TopoDS_Shape shape;
 };
+
+// Returns the edge of a curve that interpolates the points.
+TopoDS_Edge spline_edge(const std::vector<gp_Pnt>& points, bool is_periodic = false);
+// Returns the shape with all edges rounded.
+TopoDS_Shape rounded(const TopoDS_Shape& shape, double radius);
 
 // Returns solids: primitives and parts of them, sweeps, lofts, and solids with fillets, cuts and shells.
 std::vector<NamedShape> solid_shapes();

@@ -41,6 +41,24 @@
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 namespace spoonbill {
+
+TopoDS_Edge spline_edge(const std::vector<gp_Pnt>& points, bool is_periodic) {
+  const opencascade::handle<TColgp_HArray1OfPnt> array =
+      new TColgp_HArray1OfPnt(1, static_cast<int>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) array->SetValue(static_cast<int>(k) + 1, points[k]);
+  GeomAPI_Interpolate interpolation(array, is_periodic, 1e-6);
+  interpolation.Perform();
+  return BRepBuilderAPI_MakeEdge(interpolation.Curve());
+}
+
+TopoDS_Shape rounded(const TopoDS_Shape& shape, double radius) {
+  BRepFilletAPI_MakeFillet maker(shape);
+  for (TopExp_Explorer edges(shape, TopAbs_EDGE); edges.More(); edges.Next()) {
+    maker.Add(radius, TopoDS::Edge(edges.Current()));
+  }
+  return maker.Shape();
+}
+
 namespace {
 
 constexpr double half_turn = std::numbers::pi;
@@ -63,26 +81,9 @@ TopoDS_Wire square(double z, double half) {
   return polygon.Wire();
 }
 
-TopoDS_Edge spline_edge(const std::vector<gp_Pnt>& points) {
-  const opencascade::handle<TColgp_HArray1OfPnt> array =
-      new TColgp_HArray1OfPnt(1, static_cast<int>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) array->SetValue(static_cast<int>(k) + 1, points[k]);
-  GeomAPI_Interpolate interpolation(array, false, 1e-6);
-  interpolation.Perform();
-  return BRepBuilderAPI_MakeEdge(interpolation.Curve());
-}
-
 TopoDS_Shape loft(const std::vector<TopoDS_Wire>& sections, bool ruled) {
   BRepOffsetAPI_ThruSections maker(true, ruled);
   for (const TopoDS_Wire& section : sections) maker.AddWire(section);
-  return maker.Shape();
-}
-
-TopoDS_Shape rounded(const TopoDS_Shape& shape, double radius) {
-  BRepFilletAPI_MakeFillet maker(shape);
-  for (TopExp_Explorer edges(shape, TopAbs_EDGE); edges.More(); edges.Next()) {
-    maker.Add(radius, TopoDS::Edge(edges.Current()));
-  }
   return maker.Shape();
 }
 

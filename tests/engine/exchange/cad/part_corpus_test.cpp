@@ -9,7 +9,6 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
-#include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepOffsetAPI_MakePipe.hxx>
 #include <BRepOffsetAPI_ThruSections.hxx>
@@ -20,11 +19,9 @@
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
-#include <GeomAPI_Interpolate.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
-#include <TColgp_HArray1OfPnt.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
@@ -59,24 +56,8 @@ TopoDS_Wire polygon(const std::vector<gp_Pnt>& corners) {
   return maker.Wire();
 }
 
-TopoDS_Edge spline(const std::vector<gp_Pnt>& points, bool is_periodic) {
-  const opencascade::handle<TColgp_HArray1OfPnt> array =
-      new TColgp_HArray1OfPnt(1, static_cast<int>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k) array->SetValue(static_cast<int>(k) + 1, points[k]);
-  GeomAPI_Interpolate interpolation(array, is_periodic, 1e-6);
-  interpolation.Perform();
-  return BRepBuilderAPI_MakeEdge(interpolation.Curve());
-}
-
 TopoDS_Shape turned(const TopoDS_Wire& profile) {
   return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(profile).Shape(), gp_Ax1()).Shape();
-}
-
-TopoDS_Shape rounded(const TopoDS_Shape& shape, double radius) {
-  BRepFilletAPI_MakeFillet maker(shape);
-  for (TopExp_Explorer edges(shape, TopAbs_EDGE); edges.More(); edges.Next())
-    maker.Add(radius, TopoDS::Edge(edges.Current()));
-  return maker.Shape();
 }
 
 TopoDS_Shape thin_dome(int size) {
@@ -139,7 +120,7 @@ TopoDS_Shape bent_pipe(int size) {
       {0, 0, 0}, {0, 0, 15}, {4.0 * size, 0, 30}, {8.0 * size, 5, 45}, {8.0 * size, 5, 60}};
   const TopoDS_Wire circle =
       BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(upright(0, 0, 0), 1.5 + 0.5 * size)));
-  return BRepOffsetAPI_MakePipe(BRepBuilderAPI_MakeWire(spline(spine, false)),
+  return BRepOffsetAPI_MakePipe(BRepBuilderAPI_MakeWire(spline_edge(spine)),
                                 BRepBuilderAPI_MakeFace(circle).Shape())
       .Shape();
 }
@@ -161,8 +142,8 @@ TopoDS_Shape thin_vase(int size) {
     outer.emplace_back(radius, 0, 6.0 * k);
     inner.emplace_back(radius - wall, 0, 6.0 * k);
   }
-  BRepBuilderAPI_MakeWire wire(
-      spline(outer, false), BRepBuilderAPI_MakeEdge(outer.back(), inner.back()).Edge(), spline(inner, false));
+  BRepBuilderAPI_MakeWire wire(spline_edge(outer), BRepBuilderAPI_MakeEdge(outer.back(), inner.back()).Edge(),
+                               spline_edge(inner));
   wire.Add(BRepBuilderAPI_MakeEdge(inner.front(), outer.front()).Edge());
   return turned(wire.Wire());
 }
@@ -176,7 +157,7 @@ TopoDS_Shape spline_pocket(int size) {
   }
   const TopoDS_Shape pocket =
       BRepPrimAPI_MakePrism(
-          BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(spline(outline, true)).Wire()).Shape(),
+          BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(spline_edge(outline, true)).Wire()).Shape(),
           gp_Vec(0, 0, 10))
           .Shape();
   return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(30.0, 30.0, 10.0).Shape(), pocket).Shape();
